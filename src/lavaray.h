@@ -1,0 +1,154 @@
+/* lavaray: renders a scene to the same bytes on every Vulkan device.
+ *
+ * The library never prints, never exits and keeps no global state. Functions that can fail return an
+ * lr_status and describe the cause in the lr_error they are given (which may be NULL). Destroy
+ * functions accept NULL. Descriptor structs may be zeroed: zero means the default. */
+#ifndef LAVARAY_H
+#define LAVARAY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define LR_VERSION "0.1.0"
+
+typedef enum lr_status {
+    LR_OK = 0,
+    LR_ERROR_ARGUMENT,    /* a value that the caller passed is out of range */
+    LR_ERROR_SCENE,       /* the scene text is invalid; diagnostics tell where */
+    LR_ERROR_DEVICE,      /* no usable Vulkan device, or it was lost */
+    LR_ERROR_FILE,        /* a file could not be read or written */
+    LR_ERROR_MEMORY,      /* out of memory, or over a stated limit */
+    LR_ERROR_INTERRUPTED, /* the progress callback asked to stop */
+} lr_status;
+
+typedef struct lr_error {
+    lr_status status;
+    char message[1024];
+} lr_error;
+
+/* ---- Scenes ------------------------------------------------------------------------------- */
+
+typedef struct lr_scene lr_scene;
+
+/* Reads and checks the scene file at path ("-" is standard input). On LR_ERROR_SCENE, *report is
+ * the text of all errors, `file:line:col: message` each with its source line and a caret; the
+ * caller frees it. Other failures are described in error and leave *report NULL. */
+lr_status lr_scene_load(const char *path, lr_scene **scene, char **report, lr_error *error);
+
+/* The same from text in memory; name stands in the messages for the file. */
+lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_scene **scene,
+                         char **report, lr_error *error);
+void lr_scene_destroy(lr_scene *scene);
+
+/* The JSON Schema of the scene language; the caller frees it. NULL when memory is out. */
+char *lr_scene_schema(void);
+
+/* ---- Devices ------------------------------------------------------------------------------ */
+
+typedef struct lr_device_info {
+    char name[256];
+    char driver[256];  /* driver name and version as the driver states them */
+    uint32_t api_version;
+    bool software;     /* a CPU implementation such as lavapipe */
+    bool usable;       /* offers everything that lavaray needs */
+    char missing[256]; /* what it lacks when it is not usable */
+} lr_device_info;
+
+/* Lists all Vulkan devices; *devices is freed by the caller. LR_ERROR_DEVICE when there is no
+ * loader or no driver; the message says which, and the Debian package that brings it. */
+lr_status lr_device_list(lr_device_info **devices, uint32_t *count, lr_error *error);
+
+typedef struct lr_device lr_device;
+
+typedef struct lr_device_desc {
+    const char *select; /* "auto" (default: a GPU before a CPU), "cpu", "gpu", an index, a name */
+    bool validation;    /* enable the Khronos validation layer, if it is installed */
+} lr_device_desc;
+
+lr_status lr_device_open(const lr_device_desc *desc, lr_device **device, lr_error *error);
+void lr_device_close(lr_device *device);
+const lr_device_info *lr_device_get_info(const lr_device *device);
+
+/* The number of validation messages so far; always 0 without validation. The first message is
+ * copied to text (at most size bytes) when there is one. */
+uint32_t lr_device_validation_messages(const lr_device *device, char *text, size_t size);
+
+/* Whether the device passes the arithmetic self-test that the exact promise rests on. */
+bool lr_device_is_exact(const lr_device *device);
+
+/* ---- Pictures ----------------------------------------------------------------------------- */
+
+/* Linear RGB, float32, top row first. */
+typedef struct lr_picture {
+    uint32_t width, height;
+    float *pixels; /* 3 * width * height */
+} lr_picture;
+
+void lr_picture_free(lr_picture *picture);
+
+/* SHA-256 over width, height (uint32) and the pixels (float32), all little-endian, -0 written as
+ * +0, as 64 lower-case hexadecimal digits. */
+void lr_picture_hash(const lr_picture *picture, char hash[65]);
+
+typedef enum lr_transfer { LR_TRANSFER_SRGB, LR_TRANSFER_LINEAR } lr_transfer;
+typedef enum lr_format { LR_FORMAT_PPM, LR_FORMAT_PNG, LR_FORMAT_PFM } lr_format;
+
+typedef struct lr_encoding {
+    lr_format format;
+    uint32_t maxval;      /* PPM: 1..65535, PNG: 255 or 65535; 0 means 255. PFM has none. */
+    lr_transfer transfer; /* PFM is always linear */
+    float exposure;       /* in stops; the pixels are multiplied by 2^exposure */
+} lr_encoding;
+
+/* The format that a path's ending names (.ppm .png .pfm), false when it names none. */
+bool lr_format_from_path(const char *path, lr_format *format);
+
+/* Writes the picture to path, or to standard output when path is "-". A regular file is replaced
+ * only after its successor is complete. */
+lr_status lr_picture_write(const lr_picture *picture, const char *path,
+                           const lr_encoding *encoding, lr_error *error);
+
+/* ---- Rendering ---------------------------------------------------------------------------- */
+
+typedef struct lr_render_options {
+    uint32_t width, height; /* 0: as the scene says */
+    uint32_t samples;       /* per pixel; 0: as the scene says */
+    int32_t depth;          /* bounces; with has_depth false: as the scene says */
+    bool has_depth;
+    uint32_t seed;
+    bool has_seed;
+    const char *camera; /* NULL: the scene's first */
+    struct {
+        uint32_t x, y, width, height; /* of the picture; width 0: all of it */
+    } crop;
+    /* How the work is cut up. The picture does not depend on these; zero picks good values. */
+    uint32_t tile_size;  /* pixels along a tile's side */
+    uint32_t chunk_rays; /* rays handed to the device at once */
+    bool storage_loads;  /* read the scene through storage buffers, not texel buffers */
+    /* Called between dispatches from the calling thread with the fraction done, 0 to 1; returning
+     * false stops the render with LR_ERROR_INTERRUPTED. */
+    bool (*progress)(void *user, double fraction);
+    void *user;
+} lr_render_options;
+
+typedef struct lr_render_stats {
+    uint32_t width, height, samples, depth, seed;
+    struct {
+        uint64_t traced, hit;
+    } primary, reflected, refracted, shadow;
+    uint64_t passed;            /* crossings of surfaces hidden inside another medium */
+    uint64_t dropped_depth;     /* rays not traced because the depth was used up */
+    uint64_t dropped_weight;    /* ... because their weight was below min_weight */
+    uint64_t dropped_nesting;   /* ... or media lost because too many were nested */
+    uint64_t non_finite;        /* contributions that were NaN or infinite, left out */
+    uint64_t saturated;         /* contributions above the film's range, clipped to it */
+    double device_seconds, upload_seconds, compile_seconds, trace_seconds, read_back_seconds;
+    char hash[65]; /* of the picture; see lr_picture_hash */
+} lr_render_stats;
+
+/* Renders the scene; the caller frees *picture. stats may be NULL. */
+lr_status lr_render(lr_device *device, const lr_scene *scene, const lr_render_options *options,
+                    lr_picture *picture, lr_render_stats *stats, lr_error *error);
+
+#endif
