@@ -41,6 +41,13 @@ lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_s
                          char **report, lr_error *error);
 void lr_scene_destroy(lr_scene *scene);
 
+typedef struct lr_scene_info {
+    uint32_t objects, lights, materials, cameras;
+    float exposure; /* image.exposure, in stops */
+} lr_scene_info;
+
+void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info);
+
 /* The JSON Schema of the scene language; the caller frees it. NULL when memory is out. */
 char *lr_scene_schema(void);
 
