@@ -1,0 +1,55 @@
+// The descriptor set, the push constants and the specialisation constants of every kernel.
+#ifndef BINDINGS_GLSL
+#define BINDINGS_GLSL
+
+#include "gpu_layout.h"
+
+layout(constant_id = LR_SPEC_TEXEL_LOADS) const bool texel_loads = true;
+layout(constant_id = LR_SPEC_PRIMARY) const bool primary = false;
+layout(constant_id = LR_SPEC_SPHERES) const bool has_spheres = true;
+layout(constant_id = LR_SPEC_ELLIPSOIDS) const bool has_ellipsoids = true;
+layout(constant_id = LR_SPEC_PLANES) const bool has_planes = true;
+layout(constant_id = LR_SPEC_FLATS) const bool has_flats = true;
+layout(constant_id = LR_SPEC_BOXES) const bool has_boxes = true;
+layout(constant_id = LR_SPEC_CONES) const bool has_cones = true;
+layout(constant_id = LR_SPEC_MEDIA) const bool has_media = true;
+layout(constant_id = LR_SPEC_ABSORPTION) const bool has_absorption = true;
+layout(constant_id = LR_SPEC_FOG) const bool has_fog = true;
+layout(constant_id = LR_SPEC_SCATTER) const bool has_scatter = true;
+layout(constant_id = LR_SPEC_FRESNEL) const bool has_fresnel = true;
+layout(constant_id = LR_SPEC_TRANSPARENT) const bool has_transparent = true;
+layout(constant_id = LR_SPEC_SPECULAR) const bool has_specular = true;
+layout(constant_id = LR_SPEC_PATTERNS) const bool has_patterns = true;
+layout(constant_id = LR_SPEC_SPOTS) const bool has_spots = true;
+
+layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame; };
+layout(set = 0, binding = LR_BIND_SCENE_TEXEL) uniform usamplerBuffer scene_texels;
+layout(std430, set = 0, binding = LR_BIND_SCENE_ROWS) readonly buffer SceneBlock
+{
+    uvec4 scene_rows[];
+};
+layout(std430, set = 0, binding = LR_BIND_FILM) buffer FilmBlock { uint film[]; };
+layout(std430, set = 0, binding = LR_BIND_COUNTERS) buffer CounterBlock { gpu_counters counters; };
+layout(std430, set = 0, binding = LR_BIND_RAYS_IN) readonly buffer RaysInBlock { gpu_ray rays_in[]; };
+layout(std430, set = 0, binding = LR_BIND_RAYS_OUT) buffer RaysOutBlock { gpu_ray rays_out[]; };
+layout(std430, set = 0, binding = LR_BIND_HITS) buffer HitBlock { gpu_hit hits[]; };
+layout(std430, set = 0, binding = LR_BIND_LIT) buffer LitBlock { uint lit[]; };
+
+layout(push_constant) uniform WorkBlock { gpu_work work; };
+
+// Drivers give each thread a contiguous part of a dispatch's workgroups, so a picture with an empty
+// half would leave a thread idle. Even workgroups take the first half of the work, odd ones the
+// second.
+uint spread_group(uint group, uint groups)
+{
+    uint half_count = (groups + 1u) >> 1;
+    return group < half_count ? 2u * group : 2u * (group - half_count) + 1u;
+}
+
+uint queue_index()
+{
+    return spread_group(gl_WorkGroupID.x, gl_NumWorkGroups.x) * uint(LR_GROUP_SIZE) +
+           gl_LocalInvocationIndex;
+}
+
+#endif

@@ -1,0 +1,117 @@
+// The project's own division, roots, exponential and logarithm: only + - *, comparisons, selects
+// and bit operations, in a fixed order, so that every device computes the same bits (docs/exact.md).
+// Error bounds are for the stated domain and measured in tests/gpu/test_exact.c.
+#ifndef EXACT_GLSL
+#define EXACT_GLSL
+
+// 1 / x for 2^-100 <= |x| <= 2^100, within 1.5 ulp. Newton's iteration from an integer first guess
+// that is within 12 %. Elsewhere the result is unspecified, but a finite number or an infinity.
+float ex_rcp(float x)
+{
+    float a = abs(x);
+    float y = uintBitsToFloat(0x7EF311C3u - floatBitsToUint(a));
+    y = y + y * (1.0 - a * y);
+    y = y + y * (1.0 - a * y);
+    y = y + y * (1.0 - a * y);
+    return x < 0.0 ? -y : y;
+}
+
+// a / b within 2.5 ulp, for b as in ex_rcp.
+float ex_div(float a, float b)
+{
+    return a * ex_rcp(b);
+}
+
+// 1 / sqrt(x) for 2^-100 <= x <= 2^100, within 2 ulp. Newton's iteration, first guess by halving
+// the exponent.
+float ex_rsqrt(float x)
+{
+    float y = uintBitsToFloat(0x5F375A86u - (floatBitsToUint(x) >> 1));
+    float h = 0.5 * x;
+    y = y * (1.5 - h * (y * y));
+    y = y * (1.5 - h * (y * y));
+    y = y * (1.5 - h * (y * y));
+    return y;
+}
+
+// sqrt(x) for 2^-100 <= x <= 2^100, within 2 ulp; 0 for anything below 2^-100, negative or not.
+float ex_sqrt(float x)
+{
+    float r = x * ex_rsqrt(x);
+    return x < 7.888609052210118e-31 ? 0.0 : r;
+}
+
+float ex_dot(vec3 a, vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+vec3 ex_cross(vec3 a, vec3 b)
+{
+    return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+
+// The length of a vector whose squared length is within 2^-100 .. 2^100, within 3 ulp.
+float ex_length(vec3 a)
+{
+    return ex_sqrt(ex_dot(a, a));
+}
+
+// A vector of squared length 2^-100 .. 2^100 scaled to unit length, within 3e-7.
+vec3 ex_normalize(vec3 a)
+{
+    return a * ex_rsqrt(ex_dot(a, a));
+}
+
+// Linear interpolation, exact at both ends.
+vec3 ex_mix(vec3 a, vec3 b, float t)
+{
+    return a * (1.0 - t) + b * t;
+}
+
+// log2(x) for normal x > 0, absolute error below 3e-7 (relative near 1). x = m 2^e with m in
+// [sqrt(1/2), sqrt(2)), s = (m - 1) / (m + 1), log2(m) = 2 / ln 2 (s + s^3/3 + s^5/5 + ...).
+float ex_log2(float x)
+{
+    uint bits = floatBitsToUint(x);
+    uint shifted = bits - 0x3F3504F3u; // exponent 0 begins at sqrt(1/2)
+    int e = int(shifted) >> 23;
+    float m = uintBitsToFloat((shifted & 0x007FFFFFu) + 0x3F3504F3u);
+    float s = (m - 1.0) * ex_rcp(m + 1.0);
+    float z = s * s;
+    float p = 0.32059890 * z + 0.41219858;
+    p = p * z + 0.57707802;
+    p = p * z + 0.96179669;
+    return float(e) + (s * 2.88539008 + (s * z) * p);
+}
+
+// 2^x for any finite x, relative error below 3e-7; 0 below 2^-100, 2^100 above.
+float ex_exp2(float x)
+{
+    float c = clamp(x, -100.0, 100.0);
+    float whole = floor(c + 0.5);
+    float f = c - whole; // -0.5 .. 0.5
+    float p = 1.5252734e-5 * f + 1.5403530e-4;
+    p = p * f + 1.33335581e-3;
+    p = p * f + 9.61812911e-3;
+    p = p * f + 5.55041087e-2;
+    p = p * f + 2.40226507e-1;
+    p = p * f + 6.93147181e-1;
+    p = p * f + 1.0;
+    float r = p * uintBitsToFloat(uint(int(whole) + 127) << 23);
+    return x < -100.0 ? 0.0 : r;
+}
+
+// x^y for x > 0, or 0 for x <= 2^-100; relative error below 4e-7 (1 + |y log2 x|). x^0 = 1.
+float ex_pow(float x, float y)
+{
+    float r = ex_exp2(y * ex_log2(x));
+    return y == 0.0 ? 1.0 : (x < 7.888609052210118e-31 ? 0.0 : r);
+}
+
+bool ex_is_finite(float x)
+{
+    return (floatBitsToUint(x) & 0x7F800000u) != 0x7F800000u;
+}
+
+#endif

@@ -1,0 +1,83 @@
+// The integer film: sums that no order of work can change. The format is in gpu_layout.h.
+#ifndef FILM_GLSL
+#define FILM_GLSL
+
+#include "bindings.glsl"
+#include "exact.glsl"
+
+// A sum of contributions to one pixel in registers: low and high words, and a bit for each channel
+// that overflowed.
+struct film_sum {
+    uvec3 low;
+    uvec3 high;
+    uint flags;
+};
+
+film_sum film_zero()
+{
+    return film_sum(uvec3(0u), uvec3(0u), 0u);
+}
+
+// One channel of a contribution in film steps, truncated; clipped just below 2^28. value >= 0 and
+// finite. Its bits are m * 2^(e - 150) for the 24-bit significand m, so in steps of 2^-36 it is m
+// shifted left by e - 114.
+uvec2 film_fixed(float value)
+{
+    uint bits = floatBitsToUint(value);
+    int e = int(bits >> 23);
+    uint m = (bits & 0x007FFFFFu) | 0x00800000u;
+    int left = e - 114;
+    uint by = uint(left < 0 ? -left : left);
+    uint s = by & 31u;
+    uint spill = (m >> 1) >> ((31u - s) & 31u); // m >> (32 - s), right for s = 0 too
+    uvec2 up = by < 32u ? uvec2(m << s, spill) : uvec2(0u, m << s);
+    uvec2 down = uvec2(by < 32u ? m >> s : 0u, 0u);
+    uvec2 fixed_point = left < 0 ? down : up;
+    return left > 40 ? uvec2(0xFFFFFFFFu) : fixed_point;
+}
+
+void film_accumulate(inout film_sum sum, vec3 value)
+{
+    bool finite = ex_is_finite(value.x) && ex_is_finite(value.y) && ex_is_finite(value.z);
+    if (!finite)
+        atomicAdd(counters.non_finite, 1u);
+    bool above = value.x >= LR_FILM_MAX || value.y >= LR_FILM_MAX || value.z >= LR_FILM_MAX;
+    if (finite && above)
+        atomicAdd(counters.saturated, 1u);
+    vec3 kept = finite ? max(value, vec3(0.0)) : vec3(0.0);
+    uvec2 r = film_fixed(kept.x), g = film_fixed(kept.y), b = film_fixed(kept.z);
+    uvec3 low = uvec3(r.x, g.x, b.x), high = uvec3(r.y, g.y, b.y);
+    uvec3 new_low = sum.low + low;
+    uvec3 carry = uvec3(lessThan(new_low, low));
+    uvec3 new_high = sum.high + high;
+    uvec3 over = uvec3(lessThan(new_high, high));
+    uvec3 carried = new_high + carry;
+    over |= uvec3(lessThan(carried, carry));
+    sum.low = new_low;
+    sum.high = carried;
+    sum.flags |= over.x | (over.y << 1) | (over.z << 2);
+}
+
+void film_add_channel(uint at, uint channel, uint low, uint high, inout uint flags)
+{
+    uint old_low = atomicAdd(film[at + 2u * channel], low);
+    uint add = high + (old_low + low < low ? 1u : 0u);
+    // high + 1 wraps only when high is all ones: then the sum overflows in any case.
+    bool wrapped = add < high;
+    uint old_high = atomicAdd(film[at + 2u * channel + 1u], add);
+    if (wrapped || old_high + add < add)
+        flags |= 1u << (channel & 31u);
+}
+
+void film_add(uint pixel, film_sum sum)
+{
+    uint at = pixel * uint(LR_FILM_WORDS);
+    uint flags = sum.flags;
+    film_add_channel(at, 0u, sum.low.x, sum.high.x, flags);
+    film_add_channel(at, 1u, sum.low.y, sum.high.y, flags);
+    film_add_channel(at, 2u, sum.low.z, sum.high.z, flags);
+    if (flags != 0u)
+        atomicOr(film[at + uint(LR_FILM_FLAGS)], flags);
+}
+
+#endif

@@ -1,0 +1,369 @@
+/* What the host and the kernels share: structs, bindings, ids, constants. Included by C and GLSL;
+ * nothing in here is written a second time anywhere.
+ *
+ * Structs hold only uint, float, vec4, and vec3 on a 16-byte boundary followed by a scalar, so that
+ * C, std430 and std140 agree; tests/gpu/test_layout.c compares the offsets with those in the
+ * SPIR-V. Records of the scene are whole rows of 16 bytes in one buffer of rows, which the kernels
+ * read through a texel or a storage buffer (scene_data.glsl). */
+#ifndef LR_GPU_LAYOUT_H
+#define LR_GPU_LAYOUT_H
+
+#ifdef __STDC__
+#include <assert.h>
+#include <stdint.h>
+typedef uint32_t uint;
+typedef struct vec3 {
+    float x, y, z;
+} vec3;
+typedef struct vec4 {
+    float x, y, z, w;
+} vec4;
+#define LR_ROWS(type, rows) static_assert(sizeof(struct type) == 16 * (rows), #type);
+#else
+#define LR_ROWS(type, rows)
+#endif
+
+/* ---- Bindings of the one descriptor set, the same for all kernels ---- */
+#define LR_BIND_FRAME 0       /* uniform buffer: gpu_frame */
+#define LR_BIND_SCENE_TEXEL 1 /* the scene's rows as a uniform texel buffer, RGBA32UI */
+#define LR_BIND_SCENE_ROWS 2  /* the same buffer as a storage buffer */
+#define LR_BIND_FILM 3        /* LR_FILM_WORDS words a pixel of the tile */
+#define LR_BIND_COUNTERS 4    /* gpu_counters */
+#define LR_BIND_RAYS_IN 5     /* gpu_ray[] to trace */
+#define LR_BIND_RAYS_OUT 6    /* gpu_ray[] of the next generation */
+#define LR_BIND_HITS 7        /* gpu_hit[] */
+#define LR_BIND_LIT 8         /* uint[]: indices of the hits that light falls on */
+#define LR_BIND_COUNT 9
+
+/* ---- Specialisation constants: what a scene does not use is not compiled ---- */
+#define LR_SPEC_TEXEL_LOADS 0
+#define LR_SPEC_PRIMARY 1 /* trace: make camera rays instead of reading a queue */
+#define LR_SPEC_SPHERES 2
+#define LR_SPEC_ELLIPSOIDS 3
+#define LR_SPEC_PLANES 4
+#define LR_SPEC_FLATS 5
+#define LR_SPEC_BOXES 6
+#define LR_SPEC_CONES 7
+#define LR_SPEC_MEDIA 8       /* some object encloses a medium that rays enter */
+#define LR_SPEC_ABSORPTION 9  /* some medium absorbs */
+#define LR_SPEC_FOG 10
+#define LR_SPEC_SCATTER 11    /* some material reflects or transmits */
+#define LR_SPEC_FRESNEL 12
+#define LR_SPEC_TRANSPARENT 13 /* some shadow caster transmits light */
+#define LR_SPEC_SPECULAR 14
+#define LR_SPEC_PATTERNS 15
+#define LR_SPEC_SPOTS 16
+#define LR_SPEC_COUNT 17
+
+#define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
+#define LR_TILE_GROUP 8
+
+/* ---- The film: exact sums in 64-bit fixed point ----
+ * Word 2c and 2c + 1 of a pixel are the low and high half of channel c in steps of
+ * 2^-LR_FILM_STEP_BITS, so a sum reaches 2^28; word 6 has bit c set once channel c overflowed, and
+ * the channel then reads as 2^28; word 7 counts finished samples. A contribution is truncated to
+ * the step, and clipped below 2^28. */
+#define LR_FILM_WORDS 8
+#define LR_FILM_FLAGS 6
+#define LR_FILM_SAMPLES 7
+#define LR_FILM_STEP_BITS 36
+#define LR_FILM_MAX 268435456.0
+
+/* ---- Numbers the kernels and the host agree on ---- */
+#define LR_T_MAX 1.0e15            /* nothing is hit farther away */
+#define LR_BEYOND 2.0e15           /* a distance that no ray reaches */
+#define LR_OFFSET 3.814697265625e-6 /* 2^-18: how far secondary rays start off, relative */
+#define LR_SHORT_OF 0.999996185302734375 /* 1 - LR_OFFSET: shadow rays stop before the light */
+#define LR_WEIGHT_MIN 9.094947017729282e-13 /* 2^-40: a weight below it is 0 */
+#define LR_COSINE_MIN 1.0e-7       /* a cosine below it is 0 */
+#define LR_ATTENUATION_MIN -80.0    /* 1 / distance^falloff is clamped to 2^-80 .. 2^40 */
+#define LR_ATTENUATION_MAX 40.0
+#define LR_SHADOW_UNIT 1048576.0   /* optical depth in shadows: log2 units of 2^-20 */
+#define LR_SHADOW_BITS -9.5367431640625e-7 /* -1 / LR_SHADOW_UNIT */
+#define LR_SHADOW_OPAQUE 41943040u /* 40 of them: nothing gets through */
+#define LR_MEDIA_MAX 8             /* media that may be nested at one point */
+#define LR_PASSES_MAX 255          /* hidden surfaces that one ray may pass */
+#define LR_CHECKER_SNAP 1.0e-4     /* in cells; see pattern.glsl */
+
+/* ---- A primitive's and object's flags ---- */
+#define LR_FLAG_CASTS_SHADOW 1u
+#define LR_FLAG_SOLID 2u       /* encloses a medium */
+#define LR_FLAG_TRANSPARENT 4u /* its material transmits */
+#define LR_FLAG_OPEN 8u        /* cone without end caps */
+#define LR_FLAG_DISK 16u       /* flat: u^2 + v^2 <= 1 */
+#define LR_FLAG_TRIANGLE 32u   /* flat: u, v >= 0, u + v <= 1; neither: |u|, |v| <= 1 */
+
+/* ---- Kinds of primitive, the high bits of a hit's primitive ---- */
+#define LR_PRIMITIVE_NONE 0u
+#define LR_PRIMITIVE_SPHERE 1u
+#define LR_PRIMITIVE_ELLIPSOID 2u
+#define LR_PRIMITIVE_PLANE 3u
+#define LR_PRIMITIVE_FLAT 4u
+#define LR_PRIMITIVE_BOX 5u
+#define LR_PRIMITIVE_CONE 6u
+
+/* ---- Rows of the scene buffer ---- */
+struct gpu_sphere {
+    vec3 center;
+    float inv_radius;
+    float radius;
+    uint object;
+    uint flags;
+    uint unused;
+};
+LR_ROWS(gpu_sphere, 2)
+
+struct gpu_plane {
+    vec3 normal; /* unit */
+    float offset; /* normal . p = offset */
+    uint object;
+    uint flags;
+    uint unused0;
+    uint unused1;
+};
+LR_ROWS(gpu_plane, 2)
+
+/* Rectangle, disk or triangle: a piece of a plane cut out by two coordinates, linear in p. */
+struct gpu_flat {
+    vec3 normal;
+    float offset;
+    vec3 u; /* coordinate u = u . p + u_offset */
+    float u_offset;
+    vec3 v;
+    float v_offset;
+    uint object;
+    uint flags;
+    uint unused0;
+    uint unused1;
+};
+LR_ROWS(gpu_flat, 4)
+
+/* Ellipsoid (unit sphere), box (|x|, |y|, |z| <= 1) or cone frustum (axis z from 0 to 1, radius
+ * radius_from + z * radius_slope) in a space of its own: x = (row . (p, 1)) * inv_scale. The rows'
+ * linear part has entries of at most 1 and carries no scale, so objects of 1e-20 do not overflow. */
+struct gpu_solid {
+    vec4 row0;
+    vec4 row1;
+    vec4 row2;
+    float scale;
+    float inv_scale;
+    float radius_from;
+    float radius_slope;
+    uint object;
+    uint flags;
+    uint unused0;
+    uint unused1;
+};
+LR_ROWS(gpu_solid, 5)
+
+struct gpu_object {
+    vec4 row0; /* world to object space, for patterns in object space */
+    vec4 row1;
+    vec4 row2;
+    uint material;
+    uint flags;
+    uint rank; /* as a medium, 1..65535: the highest of the nested media fills the space */
+    uint unused;
+};
+LR_ROWS(gpu_object, 4)
+
+/* Indexed by rank; rank 0 is the empty space around everything. */
+struct gpu_medium {
+    vec3 absorption; /* per metre, times log2(e) */
+    float ior;
+};
+LR_ROWS(gpu_medium, 1)
+
+#define LR_GPU_PATTERN_NONE 0u
+#define LR_GPU_PATTERN_CHECKER 1u
+#define LR_GPU_PATTERN_STRIPES 2u
+#define LR_GPU_PATTERN_GRADIENT 3u
+#define LR_GPU_PATTERN_RINGS 4u
+#define LR_GPU_OBJECT_SPACE 8u /* added to the pattern's kind */
+
+#define LR_GPU_FRESNEL 1u
+#define LR_GPU_PHONG 2u
+#define LR_GPU_LIT 4u /* has ambient, diffuse or specular light to show */
+
+struct gpu_material {
+    vec3 color0;
+    uint pattern;
+    vec3 color1;
+    float inv_size;
+    vec3 pattern_origin;
+    float inv_length2; /* gradient: 1 / |direction|^2 */
+    vec3 pattern_direction; /* unit but for the gradient */
+    uint flags;
+    vec3 ambient; /* with the scene's ambient light multiplied in */
+    float shininess;
+    vec3 diffuse;
+    float ior;
+    vec3 specular;
+    uint shadow_red; /* -log2(transmit) in LR_SHADOW_UNIT */
+    vec3 reflect;
+    uint shadow_green;
+    vec3 transmit;
+    uint shadow_blue;
+};
+LR_ROWS(gpu_material, 9)
+
+#define LR_GPU_LIGHT_DIRECTIONAL 1u
+#define LR_GPU_LIGHT_SPOT 2u
+#define LR_GPU_LIGHT_SHADOWS 4u
+
+struct gpu_light {
+    vec3 position;  /* point, spot */
+    float half_falloff; /* half the exponent: the kernels know the distance squared */
+    vec3 color;     /* times intensity */
+    uint flags;
+    vec3 direction; /* unit, the way the light travels */
+    float cos_angle;
+    float cos_scale; /* 1 / (cos inner - cos angle) */
+    uint unused0;
+    uint unused1;
+    uint unused2;
+};
+LR_ROWS(gpu_light, 4)
+
+/* ---- What is the same for the whole picture ---- */
+struct gpu_frame {
+    vec3 origin;      /* camera */
+    float half_width; /* of the picture, in pixels */
+    vec3 forward;
+    float half_height;
+    vec3 pixel_right; /* one pixel to the right, at distance 1 along forward */
+    float inv_samples;
+    vec3 pixel_down;
+    uint samples;
+    vec3 background_low;
+    uint seed;
+    vec3 background_high;
+    uint depth;
+    vec3 background_up;
+    float min_weight;
+    vec3 fog_color;
+    float fog_density; /* times log2(e) */
+    /* Each kind of primitive: its first row, how many there are, and how the list is sorted: first
+     * the opaque ones that cast shadows, then the transparent ones that do, then the others. */
+    uint spheres;
+    uint sphere_count;
+    uint sphere_opaque; /* count of the first part */
+    uint sphere_casters; /* count of the first two parts */
+    uint ellipsoids;
+    uint ellipsoid_count;
+    uint ellipsoid_opaque;
+    uint ellipsoid_casters;
+    uint planes;
+    uint plane_count;
+    uint plane_opaque;
+    uint plane_casters;
+    uint flats;
+    uint flat_count;
+    uint flat_opaque;
+    uint flat_casters;
+    uint boxes;
+    uint box_count;
+    uint box_opaque;
+    uint box_casters;
+    uint cones;
+    uint cone_count;
+    uint cone_opaque;
+    uint cone_casters;
+    uint objects;
+    uint materials;
+    uint media;
+    uint lights;
+    uint inside0; /* media around the camera, two ranks a word */
+    uint inside1;
+    uint inside2;
+    uint inside3;
+};
+LR_ROWS(gpu_frame, 16)
+
+/* ---- What differs from one dispatch to the next (push constants) ---- */
+struct gpu_work {
+    uint tile_x; /* first pixel of the tile in the picture */
+    uint tile_y;
+    uint tile_width;
+    uint tile_height;
+    uint first_sample; /* of a primary pass */
+    uint count;  /* rays of a queue pass */
+    uint first;  /* first ray in the queue */
+    uint light;  /* first light and count of a light pass */
+    uint light_count;
+    uint add_ambient; /* 1 in the first light pass */
+};
+
+/* ---- Queues ---- */
+#define LR_STATE_DEPTH 255u /* bounces so far */
+#define LR_STATE_KIND_SHIFT 8
+#define LR_STATE_KIND 768u
+#define LR_STATE_PASSES_SHIFT 16
+#define LR_KIND_PRIMARY 0u
+#define LR_KIND_REFLECTED 1u
+#define LR_KIND_REFRACTED 2u
+
+struct gpu_ray {
+    vec3 origin;
+    uint pixel; /* in the tile */
+    vec3 direction; /* unit */
+    uint state;
+    vec3 weight;
+    uint unused;
+    uint media0; /* ranks of the media around the origin, two a word, in no order, 0: none */
+    uint media1;
+    uint media2;
+    uint media3;
+};
+LR_ROWS(gpu_ray, 4)
+
+struct gpu_hit {
+    vec3 position;
+    uint pixel;
+    vec3 normal; /* geometric, unit, outward */
+    uint object;
+    vec3 direction; /* of the ray that hit */
+    uint state;
+    vec3 weight;
+    float offset; /* how far off the surface a ray must start, metres */
+    uint media0;
+    uint media1;
+    uint media2;
+    uint media3;
+};
+LR_ROWS(gpu_hit, 5)
+
+/* What a pass counts. The first eight words are two indirect dispatches (x, y, z, unused). */
+struct gpu_counters {
+    uint hit_groups;
+    uint hit_groups_y;
+    uint hit_groups_z;
+    uint unused0;
+    uint lit_groups;
+    uint lit_groups_y;
+    uint lit_groups_z;
+    uint unused1;
+    uint hits;
+    uint lit;
+    uint rays;      /* in the next generation's queue */
+    uint traced;    /* entries that each kernel finished: the host checks them */
+    uint scattered;
+    uint shaded;
+    uint reflected; /* rays made, by kind */
+    uint refracted;
+    uint passed;
+    uint reflected_hits;
+    uint refracted_hits;
+    uint shadow;
+    uint shadow_hits;
+    uint dropped_depth;
+    uint dropped_weight;
+    uint dropped_nesting;
+    uint non_finite;
+    uint saturated;
+    uint unused2;
+    uint unused3;
+};
+LR_ROWS(gpu_counters, 7)
+
+#endif

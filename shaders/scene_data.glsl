@@ -1,0 +1,96 @@
+// Loads of the scene's records. scene_row is the one place that chooses between texel and storage
+// buffer: lavapipe's texel fetch is twice as fast as its storage load, and other devices differ.
+// The texel format is an integer one because a float fetch may flush subnormals, and so damage
+// packed integers.
+#ifndef SCENE_DATA_GLSL
+#define SCENE_DATA_GLSL
+
+#include "bindings.glsl"
+
+uvec4 scene_row(uint row)
+{
+    if (texel_loads)
+        return texelFetch(scene_texels, int(row));
+    return scene_rows[row];
+}
+
+vec4 scene_row_float(uint row)
+{
+    return uintBitsToFloat(scene_row(row));
+}
+
+gpu_sphere load_sphere(uint index)
+{
+    uint at = frame.spheres + 2u * index;
+    vec4 a = scene_row_float(at);
+    uvec4 b = scene_row(at + 1u);
+    return gpu_sphere(a.xyz, a.w, uintBitsToFloat(b.x), b.y, b.z, b.w);
+}
+
+gpu_plane load_plane(uint index)
+{
+    uint at = frame.planes + 2u * index;
+    vec4 a = scene_row_float(at);
+    uvec4 b = scene_row(at + 1u);
+    return gpu_plane(a.xyz, a.w, b.x, b.y, b.z, b.w);
+}
+
+gpu_flat load_flat(uint index)
+{
+    uint at = frame.flats + 4u * index;
+    vec4 a = scene_row_float(at), b = scene_row_float(at + 1u), c = scene_row_float(at + 2u);
+    uvec4 d = scene_row(at + 3u);
+    return gpu_flat(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, d.x, d.y, d.z, d.w);
+}
+
+gpu_solid load_solid(uint base, uint index)
+{
+    uint at = base + 5u * index;
+    vec4 a = scene_row_float(at), b = scene_row_float(at + 1u), c = scene_row_float(at + 2u);
+    vec4 d = scene_row_float(at + 3u);
+    uvec4 e = scene_row(at + 4u);
+    return gpu_solid(a, b, c, d.x, d.y, d.z, d.w, e.x, e.y, e.z, e.w);
+}
+
+gpu_object load_object(uint index)
+{
+    uint at = frame.objects + 4u * index;
+    uvec4 d = scene_row(at + 3u);
+    return gpu_object(scene_row_float(at), scene_row_float(at + 1u), scene_row_float(at + 2u), d.x,
+                      d.y, d.z, d.w);
+}
+
+// Material and flags of an object: x material, y flags, z rank.
+uvec3 load_object_ids(uint index)
+{
+    return scene_row(frame.objects + 4u * index + 3u).xyz;
+}
+
+gpu_medium load_medium(uint rank)
+{
+    vec4 a = scene_row_float(frame.media + rank);
+    return gpu_medium(a.xyz, a.w);
+}
+
+gpu_material load_material(uint index)
+{
+    uint at = frame.materials + 9u * index;
+    vec4 r0 = scene_row_float(at), r1 = scene_row_float(at + 1u), r2 = scene_row_float(at + 2u);
+    vec4 r3 = scene_row_float(at + 3u), r4 = scene_row_float(at + 4u);
+    vec4 r5 = scene_row_float(at + 5u);
+    uvec4 r6 = scene_row(at + 6u), r7 = scene_row(at + 7u), r8 = scene_row(at + 8u);
+    return gpu_material(r0.xyz, floatBitsToUint(r0.w), r1.xyz, r1.w, r2.xyz, r2.w, r3.xyz,
+                        floatBitsToUint(r3.w), r4.xyz, r4.w, r5.xyz, r5.w, uintBitsToFloat(r6.xyz),
+                        r6.w, uintBitsToFloat(r7.xyz), r7.w, uintBitsToFloat(r8.xyz), r8.w);
+}
+
+gpu_light load_light(uint index)
+{
+    uint at = frame.lights + 4u * index;
+    vec4 a = scene_row_float(at), b = scene_row_float(at + 1u), c = scene_row_float(at + 2u);
+    uvec4 d = scene_row(at + 3u);
+    return gpu_light(a.xyz, a.w, b.xyz, floatBitsToUint(b.w), c.xyz, c.w, uintBitsToFloat(d.x), d.y,
+                     d.z, d.w);
+}
+
+#endif
