@@ -10,6 +10,10 @@
 typedef struct lr_curve {
     uint32_t maxval;
     float *thresholds; /* maxval of them, increasing */
+    /* Where the search begins: the encoded value of the smallest float whose bits, shifted right by
+     * `shift`, are `first` + index. */
+    uint16_t *starts;
+    uint32_t first, shift;
 } lr_curve;
 
 /* Builds the curve that rounds the transfer function's value times maxval to the nearest integer,

@@ -1,0 +1,150 @@
+#include "image/image_internal.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+#define EXPOSURE_LIMIT 200.0f /* stops; float32 spans 277 */
+
+double image_exp2(double stops) {
+    int whole = (int)stops;
+    whole -= whole > stops;
+    double x = stops - whole; /* 0 <= x < 1 */
+    if (x >= 0.5) {
+        whole++;
+        x -= 1;
+    }
+    x *= 0.69314718055994530942;
+    /* The exponential series for |x| <= 0.35; the next term is below 1e-18. */
+    double sum = 1;
+    for (int i = 13; i >= 1; i--)
+        sum = 1 + sum * x / i;
+    uint64_t bits = (uint64_t)(1023 + whole) << 52;
+    double power;
+    memcpy(&power, &bits, sizeof power);
+    return power * sum;
+}
+
+static float exposed(const image_encoder *encoder, float value) {
+    return encoder->scale == 1 ? value : (float)(value * encoder->scale);
+}
+
+void image_encode_row(const image_encoder *encoder, uint32_t row, unsigned char *out) {
+    size_t count = 3 * (size_t)encoder->picture->width;
+    const float *in = encoder->picture->pixels + row * count;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t value = lr_curve_encode(&encoder->curve, exposed(encoder, in[i]));
+        if (encoder->sample_size == 2)
+            *out++ = (unsigned char)(value >> 8);
+        *out++ = (unsigned char)value;
+    }
+}
+
+/* Allocates a header and room for the raster behind it; *raster points there. */
+static lr_status begin_file(const image_encoder *encoder, const char *magic, const char *last_line,
+                            size_t sample_size, unsigned char **bytes, size_t *size,
+                            unsigned char **raster, lr_error *error) {
+    const lr_picture *picture = encoder->picture;
+    char header[64];
+    int header_size = snprintf(header, sizeof header, "%s\n%u %u\n%s\n", magic, picture->width,
+                               picture->height, last_line);
+    /* The pixels are in memory with 4 bytes a sample, so only the header can overflow the sum. */
+    size_t raster_size = 3 * sample_size * picture->width * picture->height;
+    if (raster_size <= SIZE_MAX - sizeof header)
+        *bytes = malloc(raster_size + (size_t)header_size);
+    if (!*bytes)
+        return lr_fail(error, LR_ERROR_MEMORY, "out of memory for a picture of %u x %u pixels",
+                       picture->width, picture->height);
+    memcpy(*bytes, header, (size_t)header_size);
+    *size = raster_size + (size_t)header_size;
+    *raster = *bytes + header_size;
+    return LR_OK;
+}
+
+static lr_status encode_ppm(const image_encoder *encoder, unsigned char **bytes, size_t *size,
+                            lr_error *error) {
+    char maxval[16];
+    unsigned char *raster;
+    snprintf(maxval, sizeof maxval, "%u", encoder->curve.maxval);
+    lr_status status =
+        begin_file(encoder, "P6", maxval, encoder->sample_size, bytes, size, &raster, error);
+    if (status != LR_OK)
+        return status;
+    size_t row_size = 3 * (size_t)encoder->picture->width * encoder->sample_size;
+    for (uint32_t y = 0; y < encoder->picture->height; y++)
+        image_encode_row(encoder, y, raster + y * row_size);
+    return LR_OK;
+}
+
+/* PFM puts the bottom row first, and a negative scale says little-endian. */
+static lr_status encode_pfm(const image_encoder *encoder, unsigned char **bytes, size_t *size,
+                            lr_error *error) {
+    unsigned char *out;
+    lr_status status = begin_file(encoder, "PF", "-1.0", 4, bytes, size, &out, error);
+    if (status != LR_OK)
+        return status;
+    size_t count = 3 * (size_t)encoder->picture->width;
+    for (uint32_t y = encoder->picture->height; y-- > 0;)
+        for (size_t i = 0; i < count; i++) {
+            float value = exposed(encoder, encoder->picture->pixels[y * count + i]);
+            uint32_t bits;
+            memcpy(&bits, &value, sizeof bits);
+            for (int shift = 0; shift < 32; shift += 8)
+                *out++ = (unsigned char)(bits >> shift);
+        }
+    return LR_OK;
+}
+
+static lr_status check(const lr_picture *picture, const lr_encoding *encoding, uint32_t maxval,
+                       lr_error *error) {
+    if (!picture->pixels || picture->width == 0 || picture->height == 0)
+        return lr_fail(error, LR_ERROR_ARGUMENT, "the picture is empty (%u x %u pixels)",
+                       picture->width, picture->height);
+    if (picture->width > SIZE_MAX / 12 / picture->height)
+        return lr_fail(error, LR_ERROR_ARGUMENT, "a picture of %u x %u pixels is too large",
+                       picture->width, picture->height);
+    if (!(encoding->exposure >= -EXPOSURE_LIMIT && encoding->exposure <= EXPOSURE_LIMIT))
+        return lr_fail(error, LR_ERROR_ARGUMENT, "exposure is %g stops; expected -%g to %g",
+                       (double)encoding->exposure, (double)EXPOSURE_LIMIT, (double)EXPOSURE_LIMIT);
+    if (encoding->format == LR_FORMAT_PNG && maxval != 255 && maxval != 65535)
+        return lr_fail(error, LR_ERROR_ARGUMENT,
+                       "maxval is %u, but PNG samples have 8 or 16 bits; expected 255 or 65535",
+                       maxval);
+    return LR_OK;
+}
+
+lr_status lr_picture_encode(const lr_picture *picture, const lr_encoding *encoding,
+                            unsigned char **bytes, size_t *size, lr_error *error) {
+    *bytes = NULL;
+    *size = 0;
+    uint32_t maxval = encoding->maxval ? encoding->maxval : 255;
+    lr_status status = check(picture, encoding, maxval, error);
+    if (status != LR_OK)
+        return status;
+    image_encoder encoder = {
+        .picture = picture,
+        .transfer = encoding->transfer,
+        .scale = image_exp2(encoding->exposure),
+        .sample_size = maxval < 256 ? 1 : 2,
+    };
+    if (encoding->format == LR_FORMAT_PFM)
+        return encode_pfm(&encoder, bytes, size, error);
+    status = lr_curve_create(&encoder.curve, encoding->transfer, maxval, error);
+    if (status != LR_OK)
+        return status;
+    switch (encoding->format) {
+    case LR_FORMAT_PPM:
+        status = encode_ppm(&encoder, bytes, size, error);
+        break;
+    case LR_FORMAT_PNG:
+        status = image_encode_png(&encoder, bytes, size, error);
+        break;
+    default:
+        status =
+            lr_fail(error, LR_ERROR_ARGUMENT, "unknown image format %d", (int)encoding->format);
+    }
+    lr_curve_free(&encoder.curve);
+    return status;
+}
