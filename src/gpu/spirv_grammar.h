@@ -33,7 +33,7 @@ RULE(rule_signed_division, "signed-division",
 RULE(rule_divisor, "divisor",
      "the divisor must be a constant other than 0 (a specialization constant may become 0)");
 RULE(rule_shift, "shift-amount",
-     "the amount must be a constant below the width or masked with a constant: x << (n & 31u)");
+     "the amount must be a constant below the width, or be masked in place: x << (n & 31u)");
 RULE(rule_float_width, "float-width", "floats have 32 bits");
 RULE(rule_relaxed, "relaxed-precision", "mediump and lowp let the driver choose the precision");
 RULE(rule_float_atomic, "float-atomic",
