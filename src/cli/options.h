@@ -1,0 +1,58 @@
+/* Command lines: one table per command says which flags it takes, and gives the parser, the error
+ * messages and the help text. */
+#ifndef LR_CLI_OPTIONS_H
+#define LR_CLI_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct command;
+
+typedef enum option_kind {
+    OPTION_FLAG,      /* bool, true when given */
+    OPTION_TEXT,      /* const char * */
+    OPTION_INTEGER,   /* int64_t within min..max */
+    OPTION_REAL,      /* double within min..max */
+    OPTION_SIZE,      /* option_size, each within min..max: 640x480 */
+    OPTION_RECTANGLE, /* option_rectangle, each within min..max: 10,20,64,48 */
+    OPTION_CHOICE,    /* const char *, one of choices */
+} option_kind;
+
+typedef struct option_size {
+    uint32_t width, height;
+} option_size;
+
+typedef struct option_rectangle {
+    uint32_t x, y, width, height;
+} option_rectangle;
+
+typedef struct option {
+    const char *name; /* without the dashes */
+    char letter;      /* short form, 0 for none */
+    option_kind kind;
+    size_t offset;       /* of the value in the command's own struct, which holds the defaults */
+    const char *value;   /* what stands for the value in help, such as "N" */
+    const char *help;    /* may hold several lines */
+    int64_t min, max;    /* OPTION_INTEGER, OPTION_REAL, OPTION_SIZE, OPTION_RECTANGLE */
+    const char *choices; /* OPTION_CHOICE: "srgb|linear" */
+    const char *also;    /* other names people try, "a|b": suggested, not accepted */
+    bool for_tests;      /* listed last in help */
+} option;
+
+typedef enum parse_result { PARSE_OK, PARSE_HELP, PARSE_ERROR } parse_result;
+
+/* Parses the arguments behind the command's name into values. The operands are moved to the front
+ * of argv and counted in *operand_count. PARSE_HELP: --help was given and printed. PARSE_ERROR: one
+ * line was printed. */
+parse_result options_parse(const struct command *self, int argc, char **argv, void *values,
+                           int *operand_count);
+
+void options_print_help(const struct command *self);
+
+/* The name that is nearest to a mistyped one, NULL when none is near. best starts as NULL and
+ * *distance as UINT_MAX; call it for each candidate and pass its result on. */
+const char *nearest_name(const char *typed, const char *candidate, const char *best,
+                         unsigned *distance);
+
+#endif

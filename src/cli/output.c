@@ -1,0 +1,104 @@
+#include "cli/output.h"
+
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static bool folder_of(const char *path, char *folder, size_t size) {
+    const char *slash = strrchr(path, '/');
+    int length = slash ? (int)(slash - path) : 0;
+    int written = slash == path ? snprintf(folder, size, "/")
+                  : slash       ? snprintf(folder, size, "%.*s", length, path)
+                                : snprintf(folder, size, ".");
+    return written > 0 && (size_t)written < size;
+}
+
+int check_writable(const char *path) {
+    char folder[PATH_MAX];
+    struct stat status;
+    if (strcmp(path, "-") == 0) {
+        return EXIT_FINE;
+    }
+    if (!folder_of(path, folder, sizeof folder)) {
+        print_error("%s: the path is too long", path);
+        return EXIT_FILE;
+    }
+    if (stat(path, &status) == 0) {
+        if (S_ISDIR(status.st_mode)) {
+            print_error("%s: cannot write: it is a folder", path);
+            return EXIT_FILE;
+        }
+        if (!S_ISREG(status.st_mode)) { /* a device or pipe is written in its place */
+            if (access(path, W_OK) != 0) {
+                print_error("%s: cannot write: %s", path, strerror(errno));
+                return EXIT_FILE;
+            }
+            return EXIT_FINE;
+        }
+    }
+    if (stat(folder, &status) != 0) {
+        print_error("%s: cannot write: folder %s: %s", path, folder, strerror(errno));
+        return EXIT_FILE;
+    }
+    if (!S_ISDIR(status.st_mode)) {
+        print_error("%s: cannot write: %s is not a folder", path, folder);
+        return EXIT_FILE;
+    }
+    if (access(folder, W_OK | X_OK) != 0) {
+        print_error("%s: cannot write: folder %s: %s", path, folder, strerror(errno));
+        return EXIT_FILE;
+    }
+    return EXIT_FINE;
+}
+
+bool same_file(const char *a, const char *b) {
+    struct stat sa, sb;
+    return stat(a, &sa) == 0 && stat(b, &sb) == 0 && S_ISREG(sa.st_mode) &&
+           sa.st_dev == sb.st_dev && sa.st_ino == sb.st_ino;
+}
+
+static bool put_text(FILE *file, const char *text, bool sync) {
+    bool good = fputs(text, file) >= 0 && fputc('\n', file) != EOF && fflush(file) == 0 &&
+                (!sync || fsync(fileno(file)) == 0);
+    int reason = errno;
+    if (fclose(file) != 0) {
+        return false;
+    }
+    errno = reason;
+    return good;
+}
+
+int write_text_file(const char *path, const char *text) {
+    struct stat status;
+    bool in_place = lstat(path, &status) == 0 && !S_ISREG(status.st_mode);
+    char temporary[PATH_MAX];
+    int length = snprintf(temporary, sizeof temporary, "%s.%ld.tmp", path, (long)getpid());
+    if (length < 0 || (size_t)length >= sizeof temporary) {
+        print_error("%s: the path is too long", path);
+        return EXIT_FILE;
+    }
+    const char *target = in_place ? path : temporary;
+    FILE *file = fopen(target, in_place ? "w" : "wx");
+    if (!file) {
+        print_error("%s: cannot write: %s", path, strerror(errno));
+        return EXIT_FILE;
+    }
+    bool good = put_text(file, text, !in_place);
+    if (good && !in_place) {
+        good = rename(temporary, path) == 0;
+    }
+    if (!good) {
+        print_error("%s: cannot write: %s", path, strerror(errno));
+        if (!in_place) {
+            unlink(temporary);
+        }
+        return EXIT_FILE;
+    }
+    return EXIT_FINE;
+}

@@ -1,0 +1,342 @@
+#include "cli/cli.h"
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "cli/stats.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct values {
+    const char *output, *transfer, *camera, *device, *stats;
+    option_size size;
+    int64_t samples, depth, seed, maxval; /* -1: not given */
+    double exposure;                      /* NaN: not given */
+    option_rectangle crop;
+    int64_t tile, chunk;
+    bool storage_loads, quiet, verbose;
+} values;
+
+#define AT(member) .offset = offsetof(values, member)
+
+static const option options[] = {
+    {.name = "output",
+     .letter = 'o',
+     .kind = OPTION_TEXT,
+     AT(output),
+     .value = "FILE",
+     .help = "the picture, in the format of its ending: .ppm, .png or .pfm (linear\n"
+             "floats); \"-\" writes PPM to standard output",
+     .also = "out|file"},
+    {.name = "size",
+     .kind = OPTION_SIZE,
+     AT(size),
+     .value = "WxH",
+     .min = 1,
+     .max = 32768,
+     .help = "width and height in pixels; default: the scene's",
+     .also = "width|height|resolution|res"},
+    {.name = "spp",
+     .kind = OPTION_INTEGER,
+     AT(samples),
+     .value = "N",
+     .min = 1,
+     .max = 65536,
+     .help = "samples per pixel, 1 to 65536; default: the scene's",
+     .also = "samples"},
+    {.name = "depth",
+     .kind = OPTION_INTEGER,
+     AT(depth),
+     .value = "N",
+     .min = 0,
+     .max = 64,
+     .help = "bounces, 0 to 64; 0 is what the eye sees directly; default: the scene's",
+     .also = "bounces|max-depth"},
+    {.name = "seed",
+     .kind = OPTION_INTEGER,
+     AT(seed),
+     .value = "N",
+     .min = 0,
+     .max = UINT32_MAX,
+     .help = "of the random numbers, 0 to 4294967295; default: the scene's"},
+    {.name = "maxval",
+     .kind = OPTION_INTEGER,
+     AT(maxval),
+     .value = "N",
+     .min = 1,
+     .max = 65535,
+     .help = "the value of white: 1 to 65535 for PPM, 255 or 65535 for PNG;\ndefault 255",
+     .also = "bits|bit-depth"},
+    {.name = "transfer",
+     .kind = OPTION_CHOICE,
+     AT(transfer),
+     .value = "CURVE",
+     .choices = "srgb|linear",
+     .help = "srgb (default) or linear; PFM is always linear",
+     .also = "gamma"},
+    {.name = "exposure",
+     .kind = OPTION_REAL,
+     AT(exposure),
+     .value = "EV",
+     .min = -64,
+     .max = 64,
+     .help = "stops, -64 to 64: 1 is twice as bright; default: the scene's"},
+    {.name = "camera",
+     .kind = OPTION_TEXT,
+     AT(camera),
+     .value = "NAME",
+     .help = "of the scene's cameras; default: the first"},
+    {.name = "crop",
+     .kind = OPTION_RECTANGLE,
+     AT(crop),
+     .value = "X,Y,W,H",
+     .min = 1,
+     .max = 32768,
+     .help = "render and write only this part of the picture, in pixels from its\n"
+             "top left corner",
+     .also = "region|window"},
+    {.name = "device",
+     .kind = OPTION_TEXT,
+     AT(device),
+     .value = "WHICH",
+     .help = "auto (default: a GPU before a CPU), cpu, gpu, or the index or part of\n"
+             "the name that lavaray devices shows",
+     .also = "gpu|cpu"},
+    {.name = "stats",
+     .kind = OPTION_TEXT,
+     AT(stats),
+     .value = "FILE",
+     .help = "write statistics as JSON; \"-\" is standard output"},
+    {.name = "quiet",
+     .letter = 'q',
+     .kind = OPTION_FLAG,
+     AT(quiet),
+     .help = "no progress, no summary: only warnings and errors",
+     .also = "silent"},
+    {.name = "verbose",
+     .letter = 'v',
+     .kind = OPTION_FLAG,
+     AT(verbose),
+     .help = "a longer summary"},
+    {.name = "tile",
+     .kind = OPTION_INTEGER,
+     AT(tile),
+     .value = "N",
+     .min = 1,
+     .max = 32768,
+     .help = "pixels along a tile's side",
+     .for_tests = true},
+    {.name = "chunk",
+     .kind = OPTION_INTEGER,
+     AT(chunk),
+     .value = "N",
+     .min = 1,
+     .max = 1 << 30,
+     .help = "rays handed to the device at once",
+     .for_tests = true},
+    {.name = "storage-loads",
+     .kind = OPTION_FLAG,
+     AT(storage_loads),
+     .help = "read the scene through storage buffers",
+     .for_tests = true},
+};
+
+static int wrong_usage(const command *self, const char *text) {
+    print_error("%s; see lavaray %s --help", text, self->name);
+    return EXIT_USAGE;
+}
+
+/* What the flags mean together, and whether the files can be written. */
+static int check_values(const command *self, const values *v, const char *scene,
+                        lr_encoding *encoding) {
+    if (!v->output) {
+        return wrong_usage(self, "where to? Give -o FILE.png, .ppm or .pfm");
+    }
+    bool to_stdout = strcmp(v->output, "-") == 0;
+    encoding->format = LR_FORMAT_PPM;
+    if (!to_stdout && !lr_format_from_path(v->output, &encoding->format)) {
+        print_error("%s: the name must end in .ppm, .png or .pfm; see lavaray render --help",
+                    v->output);
+        return EXIT_USAGE;
+    }
+    if (to_stdout && isatty(STDOUT_FILENO)) {
+        return wrong_usage(self, "-o - is for pipes and files, standard output is a terminal");
+    }
+    if (to_stdout && v->stats && strcmp(v->stats, "-") == 0) {
+        return wrong_usage(self, "-o - and --stats - cannot both have standard output");
+    }
+    if (v->quiet && v->verbose) {
+        return wrong_usage(self, "-q and -v contradict each other");
+    }
+    if (encoding->format == LR_FORMAT_PFM && v->maxval >= 0) {
+        return wrong_usage(self, "--maxval means nothing for PFM, which holds floats");
+    }
+    if (encoding->format == LR_FORMAT_PFM && v->transfer && strcmp(v->transfer, "srgb") == 0) {
+        return wrong_usage(self, "--transfer srgb is not for PFM, which is always linear");
+    }
+    if (encoding->format == LR_FORMAT_PNG && v->maxval >= 0 && v->maxval != 255 &&
+        v->maxval != 65535) {
+        return wrong_usage(self, "--maxval must be 255 or 65535 for PNG");
+    }
+    if (same_file(v->output, scene) || (v->stats && same_file(v->stats, scene))) {
+        return wrong_usage(self, "the output would replace the scene");
+    }
+    if (v->stats && strcmp(v->stats, v->output) == 0) {
+        return wrong_usage(self, "the picture and the statistics have the same name");
+    }
+    int code = check_writable(v->output);
+    return code == EXIT_FINE && v->stats ? check_writable(v->stats) : code;
+}
+
+static lr_render_options make_options(const values *v, progress *p) {
+    return (lr_render_options){
+        .width = v->size.width,
+        .height = v->size.height,
+        .samples = v->samples >= 0 ? (uint32_t)v->samples : 0,
+        .depth = v->depth >= 0 ? (int32_t)v->depth : 0,
+        .has_depth = v->depth >= 0,
+        .seed = v->seed >= 0 ? (uint32_t)v->seed : 0,
+        .has_seed = v->seed >= 0,
+        .camera = v->camera,
+        .crop = {v->crop.x, v->crop.y, v->crop.width, v->crop.height},
+        .tile_size = (uint32_t)v->tile,
+        .chunk_rays = (uint32_t)v->chunk,
+        .storage_loads = v->storage_loads,
+        .progress = progress_update,
+        .user = p,
+    };
+}
+
+static int say_interrupted(void) {
+    print_error("interrupted, nothing written");
+    return EXIT_INTERRUPTED;
+}
+
+/* Traces and writes; fills what record does not hold yet. */
+static int trace_and_write(const values *v, lr_device *device, const lr_scene *scene,
+                           lr_encoding encoding, progress *p, double start, render_record *record) {
+    lr_error error = {0};
+    lr_picture picture = {0};
+    lr_render_options render_options = make_options(v, p);
+    progress_phase(p, "compiling kernels");
+    lr_status status = lr_render(device, scene, &render_options, &picture, &record->stats, &error);
+    progress_clear(p);
+    int code;
+    if (status == LR_ERROR_INTERRUPTED || (status == LR_OK && interrupted())) {
+        code = say_interrupted();
+        goto done;
+    }
+    if (status != LR_OK) {
+        error.status = status;
+        code = report_failure(&error);
+        goto done;
+    }
+    /* Before the picture is written: one that a driver complained about is not worth keeping. */
+    code = check_validation(device, EXIT_FINE);
+    if (code != EXIT_FINE) {
+        goto done;
+    }
+    double write_start = seconds_now();
+    status = lr_picture_write(&picture, v->output, &encoding, &error);
+    if (status != LR_OK) {
+        error.status = status;
+        code = report_failure(&error);
+        goto done;
+    }
+    record->width = picture.width;
+    record->height = picture.height;
+    record->write_seconds = seconds_now() - write_start;
+    record->total_seconds = seconds_now() - start;
+    print_record_warnings(record);
+    if (v->verbose) {
+        print_record(record);
+    } else if (!v->quiet) {
+        print_record_line(record);
+    }
+    code = v->stats ? write_record(record, v->stats) : EXIT_FINE;
+done:
+    lr_picture_free(&picture);
+    return code;
+}
+
+static int run(const command *self, int argc, char **argv) {
+    double start = seconds_now();
+    values v = {.samples = -1, .depth = -1, .seed = -1, .maxval = -1, .exposure = NAN};
+    int operands;
+    parse_result parsed = options_parse(self, argc, argv, &v, &operands);
+    if (parsed != PARSE_OK) {
+        return parsed == PARSE_HELP ? EXIT_FINE : EXIT_USAGE;
+    }
+    const char *path = argv[0];
+    lr_encoding encoding = {0};
+    int code = check_values(self, &v, path, &encoding);
+    if (code != EXIT_FINE) {
+        return code;
+    }
+    catch_interrupts();
+    progress p;
+    progress_start(&p, v.quiet);
+
+    lr_scene *scene = NULL;
+    lr_device *device = NULL;
+    progress_phase(&p, "reading scene");
+    render_record record = {.scene = path, .output = v.output, .camera = v.camera};
+    lr_scene_info scene_info;
+    lr_error error = {0};
+    code = load_scene(path, &scene, &p);
+    record.parse_seconds = seconds_now() - start;
+    if (code != EXIT_FINE) {
+        goto done;
+    }
+    if (interrupted()) {
+        progress_clear(&p);
+        code = say_interrupted();
+        goto done;
+    }
+    lr_scene_get_info(scene, &scene_info);
+    record.exposure = isnan(v.exposure) ? (double)scene_info.exposure : v.exposure;
+    encoding.exposure = (float)record.exposure;
+    encoding.maxval = v.maxval >= 0 ? (uint32_t)v.maxval : 0;
+    encoding.transfer =
+        v.transfer && strcmp(v.transfer, "linear") == 0 ? LR_TRANSFER_LINEAR : LR_TRANSFER_SRGB;
+
+    progress_phase(&p, "opening device");
+    double device_start = seconds_now();
+    lr_device_desc desc = {.select = v.device, .validation = validation_wanted()};
+    lr_status status = lr_device_open(&desc, &device, &error);
+    record.device_seconds = seconds_now() - device_start;
+    if (status != LR_OK) {
+        progress_clear(&p);
+        error.status = status;
+        code = report_failure(&error);
+        goto done;
+    }
+    record.device = *lr_device_get_info(device);
+    record.exact = lr_device_is_exact(device);
+    code = trace_and_write(&v, device, scene, encoding, &p, start, &record);
+done:
+    lr_device_close(device);
+    lr_scene_destroy(scene);
+    return code;
+}
+
+const command command_render = {
+    .name = "render",
+    .operands = "SCENE -o FILE",
+    .summary = "render a scene to a picture",
+    .details =
+        "Renders SCENE (YAML or JSON; \"-\" is standard input) and writes the picture. The "
+        "picture\n"
+        "depends on the scene and the flags alone, not on the device. Nothing is written when the\n"
+        "render fails or is interrupted.",
+    .examples = "  lavaray render scenes/showcase.yaml -o showcase.png\n"
+                "  lavaray render room.yaml -o room.pfm --size 1920x1080 --spp 64 --device gpu\n"
+                "  lavaray render room.yaml -o - | pnmtopng > room.png",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run,
+};

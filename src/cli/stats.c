@@ -1,0 +1,160 @@
+#include "cli/stats.h"
+
+#include "cli/cli.h"
+#include "cli/output.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+#include <jansson.h>
+
+static uint64_t rays_traced(const lr_render_stats *s) {
+    return s->primary.traced + s->reflected.traced + s->refracted.traced + s->shadow.traced;
+}
+
+static double rays_per_second(const lr_render_stats *s) {
+    return s->trace_seconds > 0 ? (double)rays_traced(s) / s->trace_seconds : 0;
+}
+
+static uint64_t peak_memory(void) {
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? (uint64_t)usage.ru_maxrss * 1024 : 0;
+}
+
+static const char *output_name(const render_record *r) {
+    return strcmp(r->output, "-") == 0 ? "standard output" : r->output;
+}
+
+void print_record_line(const render_record *r) {
+    fprintf(stderr, "wrote %s, %u×%u, %u sample%s, %.1f Mray/s on %s, %.1f s\n", output_name(r),
+            (unsigned)r->width, (unsigned)r->height, (unsigned)r->stats.samples,
+            r->stats.samples == 1 ? "" : "s", 1e-6 * rays_per_second(&r->stats), r->device.name,
+            r->total_seconds);
+}
+
+static void print_rays(const char *name, uint64_t traced, uint64_t hit) {
+    if (traced) {
+        fprintf(stderr, "  %-11s %14" PRIu64 "  %5.1f %% hit\n", name, traced,
+                100.0 * (double)hit / (double)traced);
+    }
+}
+
+static void print_count(const char *name, uint64_t count) {
+    if (count) {
+        fprintf(stderr, "  %-26s %12" PRIu64 "\n", name, count);
+    }
+}
+
+void print_record(const render_record *r) {
+    const lr_render_stats *s = &r->stats;
+    fprintf(stderr,
+            "wrote %s, %u×%u of %u×%u, %u sample%s, depth %u, seed %u\n"
+            "device   %s\n         %s, Vulkan %s, %s, %s\n"
+            "hash     %s\n"
+            "rays\n",
+            output_name(r), (unsigned)r->width, (unsigned)r->height, (unsigned)s->width,
+            (unsigned)s->height, (unsigned)s->samples, s->samples == 1 ? "" : "s",
+            (unsigned)s->depth, (unsigned)s->seed, r->device.name, r->device.driver,
+            format_version(r->device.api_version).text, r->device.software ? "software" : "GPU",
+            r->exact ? "exact" : "not exact", s->hash);
+    print_rays("primary", s->primary.traced, s->primary.hit);
+    print_rays("reflected", s->reflected.traced, s->reflected.hit);
+    print_rays("refracted", s->refracted.traced, s->refracted.hit);
+    print_rays("shadow", s->shadow.traced, s->shadow.hit);
+    fprintf(stderr, "  %-11s %14" PRIu64 "  %.2f Mray/s\n", "all", rays_traced(s),
+            1e-6 * rays_per_second(s));
+    print_count("hidden surfaces passed", s->passed);
+    print_count("not traced: depth", s->dropped_depth);
+    print_count("not traced: weight", s->dropped_weight);
+    print_count("media lost: nesting", s->dropped_nesting);
+    fprintf(stderr,
+            "seconds  %.3f: device %.3f, scene %.3f, upload %.3f, compile %.3f, trace %.3f,\n"
+            "         read back %.3f, write %.3f\n"
+            "memory   %.1f MiB at most\n",
+            r->total_seconds, r->device_seconds, r->parse_seconds, s->upload_seconds,
+            s->compile_seconds, s->trace_seconds, s->read_back_seconds, r->write_seconds,
+            (double)peak_memory() / (1 << 20));
+}
+
+void print_record_warnings(const render_record *r) {
+    const lr_render_stats *s = &r->stats;
+    if (!r->exact) {
+        print_warning("%s fails the arithmetic self-test: this picture may differ from that of "
+                      "other devices",
+                      r->device.name);
+    }
+    if (s->non_finite) {
+        print_warning("%" PRIu64 " contributions were infinite or not a number and were left out",
+                      s->non_finite);
+    }
+    if (s->saturated) {
+        print_warning("%" PRIu64 " contributions were brighter than the film holds and were "
+                      "clipped",
+                      s->saturated);
+    }
+    if (s->dropped_nesting) {
+        print_warning("%" PRIu64 " times more transparent objects were inside each other than are "
+                      "kept track of",
+                      s->dropped_nesting);
+    }
+}
+
+static json_t *rays_json(uint64_t traced, uint64_t hit) {
+    return json_pack("{s:I, s:I}", "traced", (json_int_t)traced, "hit", (json_int_t)hit);
+}
+
+static json_t *record_json(const render_record *r) {
+    const lr_render_stats *s = &r->stats;
+    /* Paths may hold bytes that are not UTF-8, which JSON cannot: such a path becomes null. */
+    json_t *scene = json_string(r->scene), *output = json_string(r->output);
+    json_t *camera = r->camera ? json_string(r->camera) : NULL;
+    json_t *device =
+        json_pack("{s:s, s:s, s:s, s:b, s:b}", "name", r->device.name, "driver", r->device.driver,
+                  "api_version", format_version(r->device.api_version).text, "software",
+                  r->device.software, "exact", r->exact);
+    json_t *picture =
+        json_pack("{s:i, s:i, s:[i,i], s:i, s:i, s:I, s:f, s:s}", "width", (int)r->width, "height",
+                  (int)r->height, "full_size", (int)s->width, (int)s->height, "samples",
+                  (int)s->samples, "depth", (int)s->depth, "seed", (json_int_t)s->seed, "exposure",
+                  r->exposure, "sha256", s->hash);
+    json_t *rays = json_pack(
+        "{s:o, s:o, s:o, s:o, s:I}", "primary", rays_json(s->primary.traced, s->primary.hit),
+        "reflected", rays_json(s->reflected.traced, s->reflected.hit), "refracted",
+        rays_json(s->refracted.traced, s->refracted.hit), "shadow",
+        rays_json(s->shadow.traced, s->shadow.hit), "total", (json_int_t)rays_traced(s));
+    json_t *dropped =
+        json_pack("{s:I, s:I, s:I}", "depth", (json_int_t)s->dropped_depth, "weight",
+                  (json_int_t)s->dropped_weight, "nesting", (json_int_t)s->dropped_nesting);
+    json_t *seconds =
+        json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "device", r->device_seconds, "parse",
+                  r->parse_seconds, "upload", s->upload_seconds, "compile", s->compile_seconds,
+                  "trace", s->trace_seconds, "read_back", s->read_back_seconds, "write",
+                  r->write_seconds, "total", r->total_seconds);
+    return json_pack("{s:s, s:o*, s:o*, s:o*, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:f, s:o, s:I}",
+                     "version", LR_VERSION, "scene", scene, "output", output, "camera", camera,
+                     "device", device, "picture", picture, "rays", rays, "dropped", dropped,
+                     "passed", (json_int_t)s->passed, "non_finite", (json_int_t)s->non_finite,
+                     "saturated", (json_int_t)s->saturated, "rays_per_second", rays_per_second(s),
+                     "seconds", seconds, "peak_memory_bytes", (json_int_t)peak_memory());
+}
+
+int write_record(const render_record *r, const char *path) {
+    json_t *json = record_json(r);
+    char *text = json ? json_dumps(json, JSON_INDENT(2)) : NULL;
+    json_decref(json);
+    if (!text) {
+        print_error("cannot express the statistics as JSON");
+        return EXIT_DEVICE;
+    }
+    int code = EXIT_FINE;
+    if (strcmp(path, "-") == 0) {
+        puts(text); /* main checks standard output at the end */
+    } else {
+        code = write_text_file(path, text);
+    }
+    free(text);
+    return code;
+}
