@@ -366,4 +366,27 @@ struct gpu_counters {
 };
 LR_ROWS(gpu_counters, 7)
 
+/* ---- The start-up self-test ---- */
+#define LR_SELF_TEST_COUNT 256
+
+struct gpu_self_test_in {
+    float a;
+    float b;
+    float c;
+    uint n;
+};
+LR_ROWS(gpu_self_test_in, 1)
+
+struct gpu_self_test_out {
+    uint sum;
+    uint difference;
+    uint product;
+    uint product_sum;
+    uint sum_product;
+    uint scaled;
+    uint from_integer;
+    uint to_integer;
+};
+LR_ROWS(gpu_self_test_out, 2)
+
 #endif

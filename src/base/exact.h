@@ -1,0 +1,9 @@
+/* Elementary functions that are the same on every machine, which libm does not promise: built from
+ * + - * / and bit operations alone. (Sine and cosine are in vec.h, beside the rotations.) */
+#ifndef LR_BASE_EXACT_H
+#define LR_BASE_EXACT_H
+
+/* log2(x) within 1e-14, for finite x > 0. */
+double lr_log2(double x);
+
+#endif

@@ -1,0 +1,206 @@
+#include "render/pack.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/exact.h"
+#include "base/memory.h"
+
+#define LOG2_E 1.4426950408889634
+
+vec3 lr_pack_vec3(lr_vec3 v)
+{
+    return (vec3){(float)v.x, (float)v.y, (float)v.z};
+}
+
+bool lr_color_is_black(lr_color color)
+{
+    return color.x == 0 && color.y == 0 && color.z == 0;
+}
+
+uint32_t lr_pack_rows(lr_packed_scene *packed, const void *record, uint32_t rows)
+{
+    uint32_t first = packed->row_count;
+    for (uint32_t i = 0; i < rows; i++) {
+        if (!lr_array_reserve((void **)&packed->rows, packed->row_count, &packed->row_capacity,
+                              sizeof *packed->rows))
+            return UINT32_MAX;
+        memcpy(&packed->rows[packed->row_count++], (const char *)record + 16 * i, 16);
+    }
+    return first;
+}
+
+static lr_color multiply(lr_color a, lr_color b)
+{
+    return (lr_color){a.x * b.x, a.y * b.y, a.z * b.z};
+}
+
+/* A transmitted share as optical depth in shadows. */
+static uint32_t shadow_depth(double transmit)
+{
+    if (transmit <= 0)
+        return LR_SHADOW_OPAQUE;
+    double depth = -lr_log2(transmit) * LR_SHADOW_UNIT;
+    return depth < LR_SHADOW_OPAQUE ? (uint32_t)floor(depth + 0.5) : LR_SHADOW_OPAQUE;
+}
+
+static uint32_t pack_pattern_kind(const lr_pattern *pattern)
+{
+    static const uint32_t kinds[] = {
+        [LR_PATTERN_NONE] = LR_GPU_PATTERN_NONE,
+        [LR_PATTERN_CHECKER] = LR_GPU_PATTERN_CHECKER,
+        [LR_PATTERN_STRIPES] = LR_GPU_PATTERN_STRIPES,
+        [LR_PATTERN_GRADIENT] = LR_GPU_PATTERN_GRADIENT,
+        [LR_PATTERN_RINGS] = LR_GPU_PATTERN_RINGS,
+    };
+    return kinds[pattern->kind] | (pattern->object_space ? LR_GPU_OBJECT_SPACE : 0);
+}
+
+static void pack_material(const lr_scene *scene, const lr_material *m, struct gpu_material *out)
+{
+    lr_color ambient = multiply(m->ambient, scene->ambient);
+    bool lit = !lr_color_is_black(ambient) || !lr_color_is_black(m->diffuse) ||
+               !lr_color_is_black(m->specular);
+    const lr_pattern *p = &m->color;
+    bool gradient = p->kind == LR_PATTERN_GRADIENT;
+    lr_vec3 direction = gradient ? p->direction : lr_vec3_normalize(p->direction);
+    double length2 = lr_vec3_dot(direction, direction);
+    *out = (struct gpu_material){
+        .color0 = lr_pack_vec3(p->colors[0]),
+        .pattern = pack_pattern_kind(p),
+        .color1 = lr_pack_vec3(p->kind == LR_PATTERN_NONE ? p->colors[0] : p->colors[1]),
+        .inv_size = p->size > 0 ? (float)(1 / p->size) : 1,
+        .pattern_origin = lr_pack_vec3(p->origin),
+        .inv_length2 = length2 > 0 ? (float)(1 / length2) : 0,
+        .pattern_direction = lr_pack_vec3(direction),
+        .flags = (m->fresnel ? LR_GPU_FRESNEL : 0) |
+                 (m->highlight == LR_HIGHLIGHT_PHONG ? LR_GPU_PHONG : 0) | (lit ? LR_GPU_LIT : 0),
+        .ambient = lr_pack_vec3(ambient),
+        .shininess = (float)m->shininess,
+        .diffuse = lr_pack_vec3(m->diffuse),
+        .ior = (float)m->ior,
+        .specular = lr_pack_vec3(m->specular),
+        .reflect = lr_pack_vec3(m->reflect),
+        .transmit = lr_pack_vec3(m->transmit),
+        .shadow_red = shadow_depth(m->transmit.x),
+        .shadow_green = shadow_depth(m->transmit.y),
+        .shadow_blue = shadow_depth(m->transmit.z),
+    };
+}
+
+static lr_status pack_materials(const lr_scene *scene, lr_packed_scene *packed, lr_error *error)
+{
+    packed->frame.materials = packed->row_count;
+    for (uint32_t i = 0; i < scene->material_count; i++) {
+        const lr_material *m = &scene->materials[i];
+        struct gpu_material record;
+        pack_material(scene, m, &record);
+        if (lr_pack_rows(packed, &record, sizeof record / 16) == UINT32_MAX)
+            return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's materials");
+        uint32_t *use = packed->constants;
+        use[LR_SPEC_PATTERNS] |= m->color.kind != LR_PATTERN_NONE;
+        use[LR_SPEC_SPECULAR] |= !lr_color_is_black(m->specular);
+        use[LR_SPEC_SCATTER] |= !lr_color_is_black(m->reflect) || !lr_color_is_black(m->transmit);
+        use[LR_SPEC_FRESNEL] |= m->fresnel;
+    }
+    return LR_OK;
+}
+
+/* The light of a scene that names none: from above and to the left of the camera. */
+static lr_light default_light(lr_vec3 forward, lr_vec3 right, lr_vec3 up)
+{
+    lr_vec3 direction = lr_vec3_add(lr_vec3_scale(forward, 0.55),
+                                    lr_vec3_sub(lr_vec3_scale(right, 0.35),
+                                                lr_vec3_scale(up, 0.75)));
+    return (lr_light){.kind = LR_LIGHT_DIRECTIONAL,
+                      .color = {1, 1, 1},
+                      .intensity = 0.9,
+                      .direction = direction,
+                      .shadows = true};
+}
+
+static void pack_light(const lr_light *light, struct gpu_light *out)
+{
+    *out = (struct gpu_light){
+        .position = lr_pack_vec3(light->position),
+        .half_falloff = (float)(light->falloff / 2),
+        .color = lr_pack_vec3(lr_vec3_scale(light->color, light->intensity)),
+        .flags = (light->kind == LR_LIGHT_DIRECTIONAL ? LR_GPU_LIGHT_DIRECTIONAL : 0) |
+                 (light->kind == LR_LIGHT_SPOT ? LR_GPU_LIGHT_SPOT : 0) |
+                 (light->shadows ? LR_GPU_LIGHT_SHADOWS : 0),
+        .direction = lr_pack_vec3(lr_vec3_normalize(light->direction)),
+    };
+    if (light->kind == LR_LIGHT_SPOT) {
+        double sine, edge, inner;
+        lr_sincos_degrees(light->angle, &sine, &edge);
+        lr_sincos_degrees(light->inner, &sine, &inner);
+        out->cos_angle = (float)edge;
+        /* A light without a soft edge still needs a finite slope. */
+        out->cos_scale = (float)(1 / fmax(inner - edge, 1e-6));
+    }
+}
+
+static lr_status pack_lights(const lr_scene *scene, const lr_light *fallback,
+                             lr_packed_scene *packed, lr_error *error)
+{
+    const lr_light *lights = scene->default_light ? fallback : scene->lights;
+    uint32_t count = scene->default_light ? 1 : scene->light_count;
+    packed->frame.lights = packed->row_count;
+    packed->light_count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        struct gpu_light record;
+        pack_light(&lights[i], &record);
+        if (lr_pack_rows(packed, &record, sizeof record / 16) == UINT32_MAX)
+            return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's lights");
+        packed->constants[LR_SPEC_SPOTS] |= lights[i].kind == LR_LIGHT_SPOT;
+    }
+    return LR_OK;
+}
+
+lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings,
+                        lr_packed_scene *packed, lr_error *error)
+{
+    *packed = (lr_packed_scene){0};
+    const lr_camera *camera = settings->camera;
+    lr_vec3 forward = lr_vec3_normalize(lr_vec3_sub(camera->to, camera->from));
+    lr_vec3 right = lr_vec3_normalize(lr_vec3_cross(forward, camera->up));
+    lr_vec3 up = lr_vec3_cross(right, forward);
+    double sine, cosine;
+    lr_sincos_degrees(camera->fov / 2, &sine, &cosine);
+    double pixel = 2 * sine / cosine / settings->height;
+    packed->frame = (struct gpu_frame){
+        .origin = lr_pack_vec3(camera->from),
+        .half_width = (float)(settings->width * 0.5),
+        .forward = lr_pack_vec3(forward),
+        .half_height = (float)(settings->height * 0.5),
+        .pixel_right = lr_pack_vec3(lr_vec3_scale(right, pixel)),
+        .inv_samples = (float)(1.0 / settings->samples),
+        .pixel_down = lr_pack_vec3(lr_vec3_scale(up, -pixel)),
+        .samples = settings->samples,
+        .background_low = lr_pack_vec3(scene->background[0]),
+        .seed = settings->seed,
+        .background_high = lr_pack_vec3(scene->background[1]),
+        .depth = settings->depth,
+        .background_up = lr_pack_vec3(scene->background_up),
+        .min_weight = (float)scene->image.min_weight,
+        .fog_color = lr_pack_vec3(scene->fog_color),
+        .fog_density = (float)(scene->fog_density * LOG2_E),
+    };
+    packed->constants[LR_SPEC_FOG] = scene->fog_density > 0;
+    lr_light light = default_light(forward, right, up);
+    lr_status status = pack_materials(scene, packed, error);
+    if (!status)
+        status = pack_lights(scene, &light, packed, error);
+    if (!status)
+        status = lr_pack_objects(scene, settings, packed, error);
+    if (status)
+        lr_packed_scene_free(packed);
+    return status;
+}
+
+void lr_packed_scene_free(lr_packed_scene *packed)
+{
+    free(packed->rows);
+    *packed = (lr_packed_scene){0};
+}

@@ -1,0 +1,40 @@
+/* The scene as the kernels read it: rows of 16 bytes, the frame's constants, and which parts of the
+ * kernels the scene needs. All floats are rounded from double here and nowhere else. */
+#ifndef LR_RENDER_PACK_H
+#define LR_RENDER_PACK_H
+
+#include "base/status.h"
+#include "gpu_layout.h"
+#include "scene/scene.h"
+
+/* What a render is asked for, with the scene's own values where the caller left them open. */
+typedef struct lr_settings {
+    uint32_t width, height, samples, depth, seed;
+    uint32_t crop_x, crop_y, crop_width, crop_height;
+    const lr_camera *camera;
+} lr_settings;
+
+typedef struct lr_packed_scene {
+    vec4 *rows; /* owned */
+    uint32_t row_count, row_capacity;
+    uint32_t primitive_count, light_count;
+    struct gpu_frame frame;
+    uint32_t constants[LR_SPEC_COUNT]; /* but for LR_SPEC_TEXEL_LOADS and LR_SPEC_PRIMARY */
+} lr_packed_scene;
+
+lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings,
+                        lr_packed_scene *packed, lr_error *error);
+void lr_packed_scene_free(lr_packed_scene *packed);
+
+/* Appends `rows` rows from `record`; returns the index of the first, or UINT32_MAX when memory is
+ * out. */
+uint32_t lr_pack_rows(lr_packed_scene *packed, const void *record, uint32_t rows);
+
+/* pack_objects.c: the primitives, objects and media of the scene. */
+lr_status lr_pack_objects(const lr_scene *scene, const lr_settings *settings,
+                          lr_packed_scene *packed, lr_error *error);
+
+vec3 lr_pack_vec3(lr_vec3 v);
+bool lr_color_is_black(lr_color color);
+
+#endif
