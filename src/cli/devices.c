@@ -171,11 +171,10 @@ const command command_devices = {
     .name = "devices",
     .operands = "",
     .summary = "list the Vulkan devices and whether lavaray can use them",
-    .details =
-        "Lists the Vulkan devices, one line each: index, name, driver, Vulkan version, GPU or\n"
-        "software, whether lavaray can use it and what is missing, and whether its arithmetic is\n"
-        "exact. An exact device renders the same bytes as every other exact device. Exit code 4\n"
-        "when no device is usable.",
+    .details = "Lists the Vulkan devices, one line each: index, name, driver, Vulkan version,\n"
+               "GPU or software, whether lavaray can use it and what is missing, and whether its\n"
+               "arithmetic is exact. An exact device renders the same bytes as every other exact\n"
+               "device. Exit code 4 when no device is usable.",
     .examples = "  lavaray devices\n"
                 "  lavaray devices --self-test",
     .options = options,

@@ -226,9 +226,8 @@ const command command_doctor = {
     .name = "doctor",
     .operands = "",
     .summary = "check whether renders can work here, and say what to install",
-    .details =
-        "Checks the Vulkan loader, the drivers and the devices, and names the Debian package\n"
-        "for what is missing. Exit code 0 when a render would work, 4 otherwise.",
+    .details = "Checks the Vulkan loader, the drivers and the devices, and names the Debian\n"
+               "package for what is missing. Exit code 0 when a render would work, 4 otherwise.",
     .examples = "  lavaray doctor",
     .run = run,
 };

@@ -77,11 +77,14 @@ static parse_result unknown_option(const command *self, const char *argument, si
     unsigned distance = UINT_MAX;
     for (unsigned i = 0; i < self->option_count; i++) {
         const option *o = &self->options[i];
-        if (in_list(o->also, name, strlen(name))) {
-            best = o->name;
-            break;
-        }
         best = nearest_name(name, o->name, best, &distance);
+        for (const char *also = o->also ? o->also : ""; *also;) {
+            char word[NAME_MAX_LENGTH];
+            int size = (int)strcspn(also, "|");
+            snprintf(word, sizeof word, "%.*s", size, also);
+            best = nearest_name(name, word, NULL, &distance) ? o->name : best;
+            also += size + (also[size] == '|');
+        }
     }
     best = best ? best : nearest_name(name, "help", NULL, &distance);
     char rest[NAME_MAX_LENGTH + 40] = "'";
@@ -208,7 +211,7 @@ static const option *find_option(const command *self, const char *argument, cons
 
 static parse_result check_operands(const command *self, int count, char **operands) {
     if (count < self->min_operands) {
-        return usage_error(self, "no ", self->operands, " given");
+        return usage_error(self, "no scene given", "", "");
     }
     if (self->max_operands == 0 && count > 0) {
         return usage_error(self, "unexpected '", operands[0], "'");

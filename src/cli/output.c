@@ -21,11 +21,14 @@ static bool folder_of(const char *path, char *folder, size_t size) {
 
 int check_writable(const char *path) {
     char folder[PATH_MAX];
+    char resolved[PATH_MAX];
     struct stat status;
     if (strcmp(path, "-") == 0) {
         return EXIT_FINE;
     }
-    if (!folder_of(path, folder, sizeof folder)) {
+    /* A link is followed, so the folder that matters is that of its target. */
+    const char *target = realpath(path, resolved) ? resolved : path;
+    if (!folder_of(target, folder, sizeof folder)) {
         print_error("%s: the path is too long", path);
         return EXIT_FILE;
     }
@@ -61,44 +64,4 @@ bool same_file(const char *a, const char *b) {
     struct stat sa, sb;
     return stat(a, &sa) == 0 && stat(b, &sb) == 0 && S_ISREG(sa.st_mode) &&
            sa.st_dev == sb.st_dev && sa.st_ino == sb.st_ino;
-}
-
-static bool put_text(FILE *file, const char *text, bool sync) {
-    bool good = fputs(text, file) >= 0 && fputc('\n', file) != EOF && fflush(file) == 0 &&
-                (!sync || fsync(fileno(file)) == 0);
-    int reason = errno;
-    if (fclose(file) != 0) {
-        return false;
-    }
-    errno = reason;
-    return good;
-}
-
-int write_text_file(const char *path, const char *text) {
-    struct stat status;
-    bool in_place = lstat(path, &status) == 0 && !S_ISREG(status.st_mode);
-    char temporary[PATH_MAX];
-    int length = snprintf(temporary, sizeof temporary, "%s.%ld.tmp", path, (long)getpid());
-    if (length < 0 || (size_t)length >= sizeof temporary) {
-        print_error("%s: the path is too long", path);
-        return EXIT_FILE;
-    }
-    const char *target = in_place ? path : temporary;
-    FILE *file = fopen(target, in_place ? "w" : "wx");
-    if (!file) {
-        print_error("%s: cannot write: %s", path, strerror(errno));
-        return EXIT_FILE;
-    }
-    bool good = put_text(file, text, !in_place);
-    if (good && !in_place) {
-        good = rename(temporary, path) == 0;
-    }
-    if (!good) {
-        print_error("%s: cannot write: %s", path, strerror(errno));
-        if (!in_place) {
-            unlink(temporary);
-        }
-        return EXIT_FILE;
-    }
-    return EXIT_FINE;
 }

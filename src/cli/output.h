@@ -1,4 +1,4 @@
-/* Files that are written: checked before the work, and never left half done. */
+/* Files that will be written, checked before the work. */
 #ifndef LR_CLI_OUTPUT_H
 #define LR_CLI_OUTPUT_H
 
@@ -10,9 +10,5 @@ int check_writable(const char *path);
 
 /* Whether both paths name the same existing file. */
 bool same_file(const char *a, const char *b);
-
-/* Writes text and a newline; a regular file is replaced only when its successor is complete.
- * Returns an exit_code. */
-int write_text_file(const char *path, const char *text);
 
 #endif

@@ -27,8 +27,8 @@ static const option options[] = {
      .kind = OPTION_TEXT,
      AT(output),
      .value = "FILE",
-     .help = "the picture, in the format of its ending: .ppm, .png or .pfm (linear\n"
-             "floats); \"-\" writes PPM to standard output",
+     .help = "the picture, in the format of its ending: .ppm, .png or\n"
+             ".pfm (linear floats); \"-\" is PPM to standard output",
      .also = "out|file"},
     {.name = "size",
      .kind = OPTION_SIZE,
@@ -52,7 +52,7 @@ static const option options[] = {
      .value = "N",
      .min = 0,
      .max = 64,
-     .help = "bounces, 0 to 64; 0 is what the eye sees directly; default: the scene's",
+     .help = "bounces, 0 to 64, 0 being what the eye sees directly;\ndefault: the scene's",
      .also = "bounces|max-depth"},
     {.name = "seed",
      .kind = OPTION_INTEGER,
@@ -60,14 +60,14 @@ static const option options[] = {
      .value = "N",
      .min = 0,
      .max = UINT32_MAX,
-     .help = "of the random numbers, 0 to 4294967295; default: the scene's"},
+     .help = "of the random numbers, 0 to 4294967295;\ndefault: the scene's"},
     {.name = "maxval",
      .kind = OPTION_INTEGER,
      AT(maxval),
      .value = "N",
      .min = 1,
      .max = 65535,
-     .help = "the value of white: 1 to 65535 for PPM, 255 or 65535 for PNG;\ndefault 255",
+     .help = "the value of white: 1 to 65535 for PPM, 255 or 65535\nfor PNG; default: 255",
      .also = "bits|bit-depth"},
     {.name = "transfer",
      .kind = OPTION_CHOICE,
@@ -82,7 +82,7 @@ static const option options[] = {
      .value = "EV",
      .min = -64,
      .max = 64,
-     .help = "stops, -64 to 64: 1 is twice as bright; default: the scene's"},
+     .help = "stops, -64 to 64; 1 is twice as bright;\ndefault: the scene's"},
     {.name = "camera",
      .kind = OPTION_TEXT,
      AT(camera),
@@ -94,15 +94,15 @@ static const option options[] = {
      .value = "X,Y,W,H",
      .min = 1,
      .max = 32768,
-     .help = "render and write only this part of the picture, in pixels from its\n"
-             "top left corner",
+     .help = "render and write only this part of the picture, in\n"
+             "pixels from its top left corner",
      .also = "region|window"},
     {.name = "device",
      .kind = OPTION_TEXT,
      AT(device),
      .value = "WHICH",
-     .help = "auto (default: a GPU before a CPU), cpu, gpu, or the index or part of\n"
-             "the name that lavaray devices shows",
+     .help = "auto (default: a GPU before a CPU), cpu, gpu, or the\n"
+             "index or part of the name that lavaray devices shows",
      .also = "gpu|cpu"},
     {.name = "stats",
      .kind = OPTION_TEXT,
@@ -326,11 +326,9 @@ const command command_render = {
     .name = "render",
     .operands = "SCENE -o FILE",
     .summary = "render a scene to a picture",
-    .details =
-        "Renders SCENE (YAML or JSON; \"-\" is standard input) and writes the picture. The "
-        "picture\n"
-        "depends on the scene and the flags alone, not on the device. Nothing is written when the\n"
-        "render fails or is interrupted.",
+    .details = "Renders SCENE (YAML or JSON; \"-\" is standard input) and writes the picture. The\n"
+               "picture depends on the scene and the flags alone, not on the device. Nothing is\n"
+               "written when the render fails or is interrupted.",
     .examples = "  lavaray render scenes/showcase.yaml -o showcase.png\n"
                 "  lavaray render room.yaml -o room.pfm --size 1920x1080 --spp 64 --device gpu\n"
                 "  lavaray render room.yaml -o - | pnmtopng > room.png",

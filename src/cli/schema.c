@@ -23,9 +23,8 @@ const command command_schema = {
     .name = "schema",
     .operands = "",
     .summary = "print the JSON Schema of the scene language",
-    .details =
-        "Prints the JSON Schema of the scene language. Editors that know YAML schemas use it to\n"
-        "complete keys and to mark errors.",
+    .details = "Prints the JSON Schema of the scene language. Editors that know YAML schemas use\n"
+               "it to complete keys and to mark errors.",
     .examples = "  lavaray schema > lavaray.schema.json",
     .run = run,
 };

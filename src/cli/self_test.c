@@ -79,14 +79,15 @@ static const test_scene scenes[] = {
     {"shapes", "lavaray: 1\n" CAMERA "image: {width: 64, height: 48, samples: 4, depth: 5}\n"
                "lights: [{point: {position: [4, 6, 3], intensity: 60, falloff: 2}}]\n"
                "objects:\n"
-               "  - box: {min: [-0.5, -0.5, -0.5], max: [0.5, 0.5, 0.5], transform: [{rotate: "
-               "{axis: [1, 1, 0], angle: 33}}, {translate: [-1.2, 1, 0]}], material: {color: "
-               "teal, reflect: 0.2}}\n"
-               "  - cone: {from: [0, 0, 0], to: [0, 1, 0], radius: 0.6, transform: [{scale: [1, "
-               "2, 1]}, {rotate: {axis: [0, 0, 1], angle: -10}}, {translate: [0.5, 0, -0.5]}]}\n"
+               "  - box: {min: [-0.5, -0.5, -0.5], max: [0.5, 0.5, 0.5], rotate: {axis: [1, 1, "
+               "0], angle: 33}, translate: [-1.2, 1, 0], material: {color: teal, reflect: "
+               "0.2}}\n"
+               "  - cone: {from: [0, 0, 0], to: [0, 1, 0], radius: 0.6, scale: [1, 2, 1], rotate: "
+               "[5, 0, -10], translate: [0.5, 0, -0.5]}\n"
                "  - cylinder: {from: [1.5, 0, 0], to: [1.8, 1.4, 0.3], radius: 0.3, material: "
                "{diffuse: 0.1, reflect: 0.8}}\n"
                "  - triangle: {a: [-2, 0, -1], b: [2, 0, -1.5], c: [0, 3, -2]}\n"
+               "  - disk: {center: [-1.5, 0.01, 1.5], radius: 0.5, material: {color: red}}\n"
                "  - plane: {normal: [0, 1, 0], offset: 0}\n"},
 };
 enum { SCENE_COUNT = sizeof scenes / sizeof *scenes };

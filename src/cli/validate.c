@@ -50,10 +50,9 @@ const command command_validate = {
     .operands = "SCENE...",
     .summary = "check scenes and print all their errors, rendering nothing",
     .details =
-        "Reads each SCENE (\"-\" is standard input) and prints all that is wrong with it, with "
-        "line\n"
-        "and column. Needs no Vulkan. Exit code 3 when a scene is invalid, 5 when one cannot be\n"
-        "read.",
+        "Reads each SCENE (\"-\" is standard input) and prints all that is wrong with it,\n"
+        "with line and column. Needs no Vulkan. Exit code 3 when a scene is invalid, 5 when\n"
+        "one cannot be read.",
     .examples = "  lavaray validate scenes/*.yaml\n"
                 "  lavaray validate -q - < scene.yaml",
     .options = options,
