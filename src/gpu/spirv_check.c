@@ -128,6 +128,11 @@ static lr_status index_operands(checker *c, size_t at, const spirv_operation *op
     return LR_OK;
 }
 
+static bool is_composite(const uint32_t *instruction) {
+    uint32_t opcode = spirv_opcode(*instruction);
+    return opcode == OP_CONSTANT_COMPOSITE || opcode == OP_COMPOSITE_CONSTRUCT;
+}
+
 /* Whether every component of an integer constant lies in least .. most. A specialization constant
  * is not a constant here: its value is not known yet. */
 static bool constant_in(const checker *c, uint32_t id, uint32_t least, uint32_t most) {
@@ -142,9 +147,9 @@ static bool constant_in(const checker *c, uint32_t id, uint32_t least, uint32_t 
                 return most == UINT32_MAX;
         return defined[3] >= least && defined[3] <= most;
     case OP_CONSTANT_COMPOSITE:
+    case OP_COMPOSITE_CONSTRUCT: /* glslang's form of a scalar constant spread over a vector */
         for (uint32_t i = 3; i < length; i++)
-            if (spirv_opcode(*definition(c, defined[i])) == OP_CONSTANT_COMPOSITE ||
-                !constant_in(c, defined[i], least, most))
+            if (is_composite(definition(c, defined[i])) || !constant_in(c, defined[i], least, most))
                 return false;
         return length > 3;
     default:
@@ -159,8 +164,7 @@ static bool is_shift_amount(const checker *c, uint32_t id, uint32_t most) {
         return constant_in(c, defined[3], 0, most) || constant_in(c, defined[4], 0, most);
     case OP_COMPOSITE_CONSTRUCT: /* a vector shifted by one scalar amount */
         for (uint32_t i = 3; i < spirv_length(*defined); i++)
-            if (spirv_opcode(*definition(c, defined[i])) == OP_COMPOSITE_CONSTRUCT ||
-                !is_shift_amount(c, defined[i], most))
+            if (is_composite(definition(c, defined[i])) || !is_shift_amount(c, defined[i], most))
                 return false;
         return spirv_length(*defined) > 3;
     default:
