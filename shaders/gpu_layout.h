@@ -225,6 +225,19 @@ struct gpu_light {
 };
 LR_ROWS(gpu_light, 4)
 
+/* Where the primitives of one kind are, sorted: first the opaque ones that cast shadows, then the
+ * transparent ones that do, then the others. */
+struct gpu_list {
+    uint first; /* row */
+    uint count;
+    uint opaque;  /* length of the first part */
+    uint casters; /* length of the first two parts */
+};
+LR_ROWS(gpu_list, 1)
+#ifdef __STDC__
+typedef struct gpu_list gpu_list;
+#endif
+
 /* ---- What is the same for the whole picture ---- */
 struct gpu_frame {
     vec3 origin;      /* camera */
@@ -243,32 +256,12 @@ struct gpu_frame {
     float min_weight;
     vec3 fog_color;
     float fog_density; /* times log2(e) */
-    /* Each kind of primitive: its first row, how many there are, and how the list is sorted: first
-     * the opaque ones that cast shadows, then the transparent ones that do, then the others. */
-    uint spheres;
-    uint sphere_count;
-    uint sphere_opaque; /* count of the first part */
-    uint sphere_casters; /* count of the first two parts */
-    uint ellipsoids;
-    uint ellipsoid_count;
-    uint ellipsoid_opaque;
-    uint ellipsoid_casters;
-    uint planes;
-    uint plane_count;
-    uint plane_opaque;
-    uint plane_casters;
-    uint flats;
-    uint flat_count;
-    uint flat_opaque;
-    uint flat_casters;
-    uint boxes;
-    uint box_count;
-    uint box_opaque;
-    uint box_casters;
-    uint cones;
-    uint cone_count;
-    uint cone_opaque;
-    uint cone_casters;
+    gpu_list spheres;
+    gpu_list ellipsoids;
+    gpu_list planes;
+    gpu_list flats;
+    gpu_list boxes;
+    gpu_list cones;
     uint objects;
     uint materials;
     uint media;

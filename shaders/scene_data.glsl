@@ -21,7 +21,7 @@ vec4 scene_row_float(uint row)
 
 gpu_sphere load_sphere(uint index)
 {
-    uint at = frame.spheres + 2u * index;
+    uint at = frame.spheres.first + 2u * index;
     vec4 a = scene_row_float(at);
     uvec4 b = scene_row(at + 1u);
     return gpu_sphere(a.xyz, a.w, uintBitsToFloat(b.x), b.y, b.z, b.w);
@@ -29,7 +29,7 @@ gpu_sphere load_sphere(uint index)
 
 gpu_plane load_plane(uint index)
 {
-    uint at = frame.planes + 2u * index;
+    uint at = frame.planes.first + 2u * index;
     vec4 a = scene_row_float(at);
     uvec4 b = scene_row(at + 1u);
     return gpu_plane(a.xyz, a.w, b.x, b.y, b.z, b.w);
@@ -37,7 +37,7 @@ gpu_plane load_plane(uint index)
 
 gpu_flat load_flat(uint index)
 {
-    uint at = frame.flats + 4u * index;
+    uint at = frame.flats.first + 4u * index;
     vec4 a = scene_row_float(at), b = scene_row_float(at + 1u), c = scene_row_float(at + 2u);
     uvec4 d = scene_row(at + 3u);
     return gpu_flat(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, d.x, d.y, d.z, d.w);

@@ -26,34 +26,34 @@ nearest_hit trace_nearest(vec3 o, vec3 d)
     nearest_hit best = nearest_hit(LR_T_MAX, LR_PRIMITIVE_NONE, 0u, 0xFFFFFFFFu);
     float inv_a = ex_rcp(ex_dot(d, d));
     if (has_spheres)
-        for (uint i = 0u; i < frame.sphere_count; i++) {
+        for (uint i = 0u; i < frame.spheres.count; i++) {
             gpu_sphere s = load_sphere(i);
             keep_nearer(best, intersect_sphere(o, d, inv_a, s), LR_PRIMITIVE_SPHERE, i, s.object);
         }
     if (has_ellipsoids)
-        for (uint i = 0u; i < frame.ellipsoid_count; i++) {
-            gpu_solid s = load_solid(frame.ellipsoids, i);
+        for (uint i = 0u; i < frame.ellipsoids.count; i++) {
+            gpu_solid s = load_solid(frame.ellipsoids.first, i);
             keep_nearer(best, intersect_ellipsoid(o, d, s), LR_PRIMITIVE_ELLIPSOID, i, s.object);
         }
     if (has_planes)
-        for (uint i = 0u; i < frame.plane_count; i++) {
+        for (uint i = 0u; i < frame.planes.count; i++) {
             gpu_plane p = load_plane(i);
             keep_nearer(best, intersect_plane(o, d, p.normal, p.offset), LR_PRIMITIVE_PLANE, i,
                         p.object);
         }
     if (has_flats)
-        for (uint i = 0u; i < frame.flat_count; i++) {
+        for (uint i = 0u; i < frame.flats.count; i++) {
             gpu_flat f = load_flat(i);
             keep_nearer(best, intersect_flat(o, d, f), LR_PRIMITIVE_FLAT, i, f.object);
         }
     if (has_boxes)
-        for (uint i = 0u; i < frame.box_count; i++) {
-            gpu_solid s = load_solid(frame.boxes, i);
+        for (uint i = 0u; i < frame.boxes.count; i++) {
+            gpu_solid s = load_solid(frame.boxes.first, i);
             keep_nearer(best, intersect_box(o, d, s), LR_PRIMITIVE_BOX, i, s.object);
         }
     if (has_cones)
-        for (uint i = 0u; i < frame.cone_count; i++) {
-            gpu_solid s = load_solid(frame.cones, i);
+        for (uint i = 0u; i < frame.cones.count; i++) {
+            gpu_solid s = load_solid(frame.cones.first, i);
             keep_nearer(best, intersect_cone(o, d, s), LR_PRIMITIVE_CONE, i, s.object);
         }
     return best;
@@ -89,17 +89,17 @@ void surface_at(nearest_hit hit, vec3 o, vec3 d, out vec3 position, out vec3 nor
         reach = max(reach, abs(f.offset));
     }
     if (has_ellipsoids && hit.kind == LR_PRIMITIVE_ELLIPSOID) {
-        gpu_solid s = load_solid(frame.ellipsoids, hit.index);
+        gpu_solid s = load_solid(frame.ellipsoids.first, hit.index);
         normal = solid_normal(s, solid_point(s, position));
         reach = max(reach, hit.t);
     }
     if (has_boxes && hit.kind == LR_PRIMITIVE_BOX) {
-        gpu_solid s = load_solid(frame.boxes, hit.index);
+        gpu_solid s = load_solid(frame.boxes.first, hit.index);
         normal = solid_normal(s, box_face_normal(solid_point(s, position)));
         reach = max(reach, hit.t);
     }
     if (has_cones && hit.kind == LR_PRIMITIVE_CONE) {
-        gpu_solid s = load_solid(frame.cones, hit.index);
+        gpu_solid s = load_solid(frame.cones.first, hit.index);
         normal = solid_normal(s, cone_surface_normal(s, solid_point(s, position)));
         reach = max(reach, hit.t);
     }
@@ -138,54 +138,54 @@ uvec3 trace_shadow(vec3 o, vec3 d, float t_max)
     bool blocked = false;
     float inv_a = ex_rcp(ex_dot(d, d));
     if (has_spheres)
-        for (uint i = 0u; i < frame.sphere_opaque && !blocked; i++)
+        for (uint i = 0u; i < frame.spheres.opaque && !blocked; i++)
             blocked = crosses(intersect_sphere(o, d, inv_a, load_sphere(i)), t_max);
     if (has_ellipsoids)
-        for (uint i = 0u; i < frame.ellipsoid_opaque && !blocked; i++)
-            blocked = crosses(intersect_ellipsoid(o, d, load_solid(frame.ellipsoids, i)), t_max);
+        for (uint i = 0u; i < frame.ellipsoids.opaque && !blocked; i++)
+            blocked = crosses(intersect_ellipsoid(o, d, load_solid(frame.ellipsoids.first, i)), t_max);
     if (has_planes)
-        for (uint i = 0u; i < frame.plane_opaque && !blocked; i++) {
+        for (uint i = 0u; i < frame.planes.opaque && !blocked; i++) {
             gpu_plane p = load_plane(i);
             blocked = crosses(intersect_plane(o, d, p.normal, p.offset), t_max);
         }
     if (has_flats)
-        for (uint i = 0u; i < frame.flat_opaque && !blocked; i++)
+        for (uint i = 0u; i < frame.flats.opaque && !blocked; i++)
             blocked = crosses(intersect_flat(o, d, load_flat(i)), t_max);
     if (has_boxes)
-        for (uint i = 0u; i < frame.box_opaque && !blocked; i++)
-            blocked = crosses(intersect_box(o, d, load_solid(frame.boxes, i)), t_max);
+        for (uint i = 0u; i < frame.boxes.opaque && !blocked; i++)
+            blocked = crosses(intersect_box(o, d, load_solid(frame.boxes.first, i)), t_max);
     if (has_cones)
-        for (uint i = 0u; i < frame.cone_opaque && !blocked; i++)
-            blocked = crosses(intersect_cone(o, d, load_solid(frame.cones, i)), t_max);
+        for (uint i = 0u; i < frame.cones.opaque && !blocked; i++)
+            blocked = crosses(intersect_cone(o, d, load_solid(frame.cones.first, i)), t_max);
 
     if (has_transparent && has_spheres)
-        for (uint i = frame.sphere_opaque; i < frame.sphere_casters; i++) {
+        for (uint i = frame.spheres.opaque; i < frame.spheres.casters; i++) {
             gpu_sphere s = load_sphere(i);
             tint(depth, intersect_sphere(o, d, inv_a, s), t_max, s.object);
         }
     if (has_transparent && has_ellipsoids)
-        for (uint i = frame.ellipsoid_opaque; i < frame.ellipsoid_casters; i++) {
-            gpu_solid s = load_solid(frame.ellipsoids, i);
+        for (uint i = frame.ellipsoids.opaque; i < frame.ellipsoids.casters; i++) {
+            gpu_solid s = load_solid(frame.ellipsoids.first, i);
             tint(depth, intersect_ellipsoid(o, d, s), t_max, s.object);
         }
     if (has_transparent && has_planes)
-        for (uint i = frame.plane_opaque; i < frame.plane_casters; i++) {
+        for (uint i = frame.planes.opaque; i < frame.planes.casters; i++) {
             gpu_plane p = load_plane(i);
             tint(depth, intersect_plane(o, d, p.normal, p.offset), t_max, p.object);
         }
     if (has_transparent && has_flats)
-        for (uint i = frame.flat_opaque; i < frame.flat_casters; i++) {
+        for (uint i = frame.flats.opaque; i < frame.flats.casters; i++) {
             gpu_flat f = load_flat(i);
             tint(depth, intersect_flat(o, d, f), t_max, f.object);
         }
     if (has_transparent && has_boxes)
-        for (uint i = frame.box_opaque; i < frame.box_casters; i++) {
-            gpu_solid s = load_solid(frame.boxes, i);
+        for (uint i = frame.boxes.opaque; i < frame.boxes.casters; i++) {
+            gpu_solid s = load_solid(frame.boxes.first, i);
             tint(depth, intersect_box(o, d, s), t_max, s.object);
         }
     if (has_transparent && has_cones)
-        for (uint i = frame.cone_opaque; i < frame.cone_casters; i++) {
-            gpu_solid s = load_solid(frame.cones, i);
+        for (uint i = frame.cones.opaque; i < frame.cones.casters; i++) {
+            gpu_solid s = load_solid(frame.cones.first, i);
             tint(depth, intersect_cone(o, d, s), t_max, s.object);
         }
     return blocked ? uvec3(LR_SHADOW_OPAQUE) : depth;

@@ -15,15 +15,15 @@ typedef enum list_kind { SPHERES, ELLIPSOIDS, PLANES, FLATS, BOXES, CONES, LIST_
 /* How the lists are sorted (gpu_layout.h, struct gpu_frame). */
 typedef enum shadow_part { OPAQUE_CASTER, TRANSPARENT_CASTER, NO_CASTER } shadow_part;
 
-typedef union record {
+typedef union primitive_record {
     struct gpu_sphere sphere;
     struct gpu_plane plane;
     struct gpu_flat flat;
     struct gpu_solid solid;
-} record;
+} primitive_record;
 
 typedef struct primitive {
-    record record;
+    primitive_record record;
     list_kind list;
     shadow_part part;
     uint32_t rows;
@@ -360,12 +360,12 @@ static bool pack_object_record(const lr_scene *scene, uint32_t index, uint32_t f
     return lr_pack_rows(packed, &record, sizeof record / 16) != UINT32_MAX;
 }
 
-/* Packs one kind's list in its three parts; list points at its four words in the frame. */
-static bool pack_list(const primitive *primitives, uint32_t count, list_kind kind, uint32_t *list,
+/* Packs one kind's list in its three parts; list describes it. */
+static bool pack_list(const primitive *primitives, uint32_t count, list_kind kind, gpu_list *list,
                       lr_packed_scene *packed)
 {
     uint32_t ends[3], written = 0;
-    list[0] = packed->row_count;
+    list->first = packed->row_count;
     for (shadow_part part = OPAQUE_CASTER; part <= NO_CASTER; part++) {
         for (uint32_t i = 0; i < count; i++) {
             const primitive *p = &primitives[i];
@@ -377,11 +377,11 @@ static bool pack_list(const primitive *primitives, uint32_t count, list_kind kin
         }
         ends[part] = written;
     }
-    list[1] = written;
-    list[2] = ends[OPAQUE_CASTER];
-    list[3] = ends[TRANSPARENT_CASTER];
+    list->count = written;
+    list->opaque = ends[OPAQUE_CASTER];
+    list->casters = ends[TRANSPARENT_CASTER];
     packed->constants[LR_SPEC_SPHERES + kind] = written > 0;
-    packed->constants[LR_SPEC_TRANSPARENT] |= list[3] > list[2];
+    packed->constants[LR_SPEC_TRANSPARENT] |= list->casters > list->opaque;
     return true;
 }
 
@@ -414,9 +414,9 @@ lr_status lr_pack_objects(const lr_scene *scene, const lr_settings *settings,
         set_ids(&primitives[i], i, flags);
         fits = pack_object_record(scene, i, flags, ranks[i], packed);
     }
-    uint32_t *lists[LIST_COUNT] = {&packed->frame.spheres, &packed->frame.ellipsoids,
-                                   &packed->frame.planes,  &packed->frame.flats,
-                                   &packed->frame.boxes,   &packed->frame.cones};
+    struct gpu_frame *frame = &packed->frame;
+    gpu_list *lists[LIST_COUNT] = {&frame->spheres, &frame->ellipsoids, &frame->planes,
+                                   &frame->flats,   &frame->boxes,      &frame->cones};
     for (list_kind kind = SPHERES; fits && !status && kind < LIST_COUNT; kind++)
         fits = pack_list(primitives, count, kind, lists[kind], packed);
     free(primitives);

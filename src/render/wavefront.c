@@ -1,0 +1,389 @@
+#include "render/wavefront.h"
+
+#include <string.h>
+
+#include "gpu/commands.h"
+#include "light.spv.h"
+#include "scatter.spv.h"
+#include "trace.spv.h"
+
+/* Rays times primitives that one dispatch may test: about 50 ms on two slow cores. */
+#define TESTS_PER_DISPATCH (1u << 25)
+
+/* lavapipe of Mesa 22.3 silently ends all loops of an invocation after some 65,000 iterations
+ * (docs/drivers.md); this stays far below. */
+#define LOOPS_PER_INVOCATION 16384
+
+#define CHUNK_DEFAULT 65536
+#define CHUNK_MIN 1024
+
+static uint32_t at_least(uint32_t value, uint32_t least)
+{
+    return value > least ? value : least;
+}
+
+static uint32_t at_most(uint32_t value, uint32_t most)
+{
+    return value < most ? value : most;
+}
+
+static uint32_t groups_for(uint32_t items, uint32_t size)
+{
+    return (items + size - 1) / size;
+}
+
+/* How the work is cut up: dispatches that stay short whatever the number of primitives. */
+static void plan(lr_wavefront *w, const lr_render_options *options)
+{
+    uint32_t cost = w->scene->primitive_count + 8;
+    uint32_t chunk = at_least(at_most(TESTS_PER_DISPATCH / cost, CHUNK_DEFAULT), CHUNK_MIN);
+    w->tile_size = 128;
+    while (w->tile_size > 8 && w->tile_size * w->tile_size > chunk)
+        w->tile_size /= 2;
+    if (options->chunk_rays)
+        chunk = options->chunk_rays;
+    if (options->tile_size)
+        w->tile_size = at_least(at_most(options->tile_size, 1024), 1);
+    w->chunk_rays = at_least(chunk, w->tile_size * w->tile_size);
+    uint32_t lights = at_least(at_most(TESTS_PER_DISPATCH / cost / w->chunk_rays,
+                                       LOOPS_PER_INVOCATION / cost),
+                               1);
+    w->lights_at_once = at_most(lights, at_least(w->scene->light_count, 1));
+}
+
+static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *error)
+{
+    uint32_t constants[LR_SPEC_COUNT];
+    memcpy(constants, w->scene->constants, sizeof constants);
+    constants[LR_SPEC_TEXEL_LOADS] = texel_loads;
+    constants[LR_SPEC_PRIMARY] = 1;
+    lr_program_desc desc = {trace_spv, sizeof trace_spv / 4, constants, LR_SPEC_COUNT};
+    lr_status status = lr_program_create(w->device, &w->layout, &desc, &w->primary, error);
+    constants[LR_SPEC_PRIMARY] = 0;
+    if (!status && constants[LR_SPEC_SCATTER]) {
+        status = lr_program_create(w->device, &w->layout, &desc, &w->trace, error);
+        desc.words = scatter_spv;
+        desc.word_count = sizeof scatter_spv / 4;
+        if (!status)
+            status = lr_program_create(w->device, &w->layout, &desc, &w->scatter, error);
+    }
+    desc.words = light_spv;
+    desc.word_count = sizeof light_spv / 4;
+    if (!status)
+        status = lr_program_create(w->device, &w->layout, &desc, &w->light, error);
+    return status;
+}
+
+static lr_status create_buffers(lr_wavefront *w, lr_error *error)
+{
+    VkDeviceSize film_size = 4ull * LR_FILM_WORDS * w->tile_size * w->tile_size;
+    const struct {
+        lr_buffer *buffer;
+        lr_buffer_kind kind;
+        VkDeviceSize size;
+        const char *what;
+    } wanted[] = {
+        {&w->frame, LR_BUFFER_UNIFORM, sizeof(struct gpu_frame), "the frame"},
+        {&w->rows, LR_BUFFER_TEXEL, 16ull * w->scene->row_count, "the scene"},
+        {&w->film, LR_BUFFER_STORAGE, film_size, "the film"},
+        {&w->film_host, LR_BUFFER_HOST, film_size, "the film"},
+        {&w->counters, LR_BUFFER_STORAGE, sizeof(struct gpu_counters), "the counters"},
+        {&w->counters_host, LR_BUFFER_HOST, sizeof(struct gpu_counters), "the counters"},
+        {&w->hits, LR_BUFFER_STORAGE, sizeof(struct gpu_hit) * (VkDeviceSize)w->chunk_rays,
+         "the hits"},
+        {&w->lit, LR_BUFFER_STORAGE, 4ull * w->chunk_rays, "the list of lit hits"},
+        {&w->none, LR_BUFFER_STORAGE, 256, "nothing"},
+    };
+    lr_status status = LR_OK;
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted && !status; i++)
+        status = lr_buffer_create(w->device, wanted[i].kind, wanted[i].size, wanted[i].what,
+                                  wanted[i].buffer, error);
+    if (!status)
+        status = lr_buffer_upload(w->device, &w->frame, &w->scene->frame, sizeof w->scene->frame,
+                                  error);
+    if (!status)
+        status = lr_buffer_upload(w->device, &w->rows, w->scene->rows,
+                                  16 * (size_t)w->scene->row_count, error);
+    return status;
+}
+
+static lr_status create_layout(lr_wavefront *w, lr_error *error)
+{
+    VkDescriptorType types[LR_BIND_COUNT];
+    for (uint32_t i = 0; i < LR_BIND_COUNT; i++)
+        types[i] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    types[LR_BIND_FRAME] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    types[LR_BIND_SCENE_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+    lr_layout_desc desc = {types, LR_BIND_COUNT, sizeof(struct gpu_work), LR_GENERATIONS_MAX};
+    return lr_layout_create(w->device, &desc, &w->layout, error);
+}
+
+/* Makes the set that traces generation g into generation g + 1, and the queue of the latter. */
+static lr_status open_generation(lr_wavefront *w, uint32_t g, lr_error *error)
+{
+    if (w->queues[g].set)
+        return LR_OK;
+    bool children = w->scene->constants[LR_SPEC_SCATTER];
+    lr_status status = LR_OK;
+    lr_queue *next = &w->queues[g + 1];
+    if (children)
+        status = lr_buffer_create(w->device, LR_BUFFER_STORAGE,
+                                  2 * sizeof(struct gpu_ray) * (VkDeviceSize)w->chunk_rays,
+                                  "the queue of rays", &next->rays, error);
+    if (status)
+        return status;
+    const lr_buffer *buffers[LR_BIND_COUNT] = {
+        [LR_BIND_FRAME] = &w->frame,
+        [LR_BIND_SCENE_TEXEL] = &w->rows,
+        [LR_BIND_SCENE_ROWS] = &w->rows,
+        [LR_BIND_FILM] = &w->film,
+        [LR_BIND_COUNTERS] = &w->counters,
+        [LR_BIND_RAYS_IN] = g > 0 ? &w->queues[g].rays : &w->none,
+        [LR_BIND_RAYS_OUT] = children ? &next->rays : &w->none,
+        [LR_BIND_HITS] = &w->hits,
+        [LR_BIND_LIT] = &w->lit,
+    };
+    return lr_set_create(w->device, &w->layout, buffers, &w->queues[g].set, error);
+}
+
+static void reset_counters(lr_wavefront *w)
+{
+    struct gpu_counters zero = {
+        .hit_groups_y = 1, .hit_groups_z = 1, .lit_groups_y = 1, .lit_groups_z = 1};
+    lr_commands_write(w->device, &w->counters, &zero, sizeof zero);
+}
+
+/* Drivers compile a kernel when it first runs, so each runs once here on nothing. */
+static lr_status warm_up(lr_wavefront *w, lr_error *error)
+{
+    lr_status status = lr_commands_begin(w->device, error);
+    if (status)
+        return status;
+    struct gpu_work nothing = {0};
+    reset_counters(w);
+    const VkPipeline programs[] = {w->primary, w->trace, w->scatter, w->light};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) {
+        if (!programs[i])
+            continue;
+        lr_commands_barrier(w->device);
+        lr_commands_dispatch(w->device, &w->layout, programs[i], w->queues[0].set, &nothing, 1, 1,
+                             1);
+    }
+    return lr_commands_finish(w->device, error);
+}
+
+lr_status lr_wavefront_create(lr_device *device, const lr_packed_scene *scene,
+                              const lr_render_options *options, lr_render_stats *stats,
+                              lr_wavefront *wavefront, lr_error *error)
+{
+    *wavefront = (lr_wavefront){.device = device, .scene = scene, .stats = stats};
+    lr_wavefront *w = wavefront;
+    plan(w, options);
+    double start = lr_now();
+    lr_status status = create_layout(w, error);
+    if (!status)
+        status = create_buffers(w, error);
+    if (!status)
+        status = open_generation(w, 0, error);
+    double uploaded = lr_now();
+    bool texel_loads = w->rows.view && !options->storage_loads;
+    if (!status)
+        status = create_programs(w, texel_loads, error);
+    if (!status)
+        status = warm_up(w, error);
+    stats->upload_seconds += uploaded - start;
+    stats->compile_seconds += lr_now() - uploaded;
+    if (status)
+        lr_wavefront_destroy(w);
+    return status;
+}
+
+void lr_wavefront_destroy(lr_wavefront *wavefront)
+{
+    lr_wavefront *w = wavefront;
+    if (!w->device)
+        return;
+    VkPipeline programs[] = {w->primary, w->trace, w->scatter, w->light};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
+        if (programs[i])
+            w->device->vk.vkDestroyPipeline(w->device->handle, programs[i], NULL);
+    lr_layout_destroy(w->device, &w->layout);
+    lr_buffer *buffers[] = {&w->frame,         &w->rows, &w->film, &w->film_host, &w->counters,
+                            &w->counters_host, &w->hits, &w->lit,  &w->none};
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
+        lr_buffer_destroy(w->device, buffers[i]);
+    for (uint32_t i = 0; i < LR_GENERATIONS_MAX; i++)
+        lr_buffer_destroy(w->device, &w->queues[i].rays);
+    *w = (lr_wavefront){0};
+}
+
+/* Light on the hits of a pass: in the scenes that scatter on the listed ones, else on all. */
+static void record_light(lr_wavefront *w, struct gpu_work *work, VkDescriptorSet set)
+{
+    bool listed = w->scene->constants[LR_SPEC_SCATTER];
+    size_t groups = listed ? offsetof(struct gpu_counters, lit_groups)
+                           : offsetof(struct gpu_counters, hit_groups);
+    work->light = 0;
+    work->add_ambient = 1;
+    do {
+        work->light_count = at_most(w->lights_at_once, w->scene->light_count - work->light);
+        lr_commands_barrier(w->device);
+        lr_commands_dispatch_indirect(w->device, &w->layout, w->light, set, work, &w->counters,
+                                      groups);
+        work->light += work->light_count;
+        work->add_ambient = 0;
+    } while (work->light < w->scene->light_count);
+}
+
+static uint32_t light_dispatches(const lr_wavefront *w)
+{
+    return at_least(groups_for(w->scene->light_count, w->lights_at_once), 1);
+}
+
+/* Adds a pass's counts to the statistics, after checking that no kernel stopped half-way and no
+ * queue overflowed: drivers have done either without a word. */
+static lr_status take_counts(lr_wavefront *w, uint32_t traced, uint32_t generation,
+                             lr_error *error)
+{
+    const struct gpu_counters *c = w->counters_host.mapped;
+    bool scatters = w->scene->constants[LR_SPEC_SCATTER];
+    uint32_t lit = scatters ? c->lit : c->hits;
+    if (c->traced != traced || c->hits > traced || (scatters && c->scattered != c->hits) ||
+        c->rays > 2 * w->chunk_rays || c->shaded != lit * light_dispatches(w))
+        return lr_fail(error, LR_ERROR_DEVICE,
+                       "the device did not finish its work (%u of %u rays traced, %u of %u hits "
+                       "scattered, %u of %u lit); its driver is faulty, try --device cpu",
+                       c->traced, traced, c->scattered, c->hits, c->shaded,
+                       lit * light_dispatches(w));
+    lr_render_stats *s = w->stats;
+    if (generation == 0) {
+        s->primary.traced += traced;
+        s->primary.hit += c->hits;
+    }
+    s->reflected.traced += c->reflected;
+    s->reflected.hit += c->reflected_hits;
+    s->refracted.traced += c->refracted;
+    s->refracted.hit += c->refracted_hits;
+    s->shadow.traced += c->shadow;
+    s->shadow.hit += c->shadow_hits;
+    s->passed += c->passed;
+    s->dropped_depth += c->dropped_depth;
+    s->dropped_weight += c->dropped_weight;
+    s->dropped_nesting += c->dropped_nesting;
+    s->non_finite += c->non_finite;
+    s->saturated += c->saturated;
+    w->queues[generation + 1].count = c->rays;
+    return LR_OK;
+}
+
+/* One pass: trace, scatter, light. */
+static lr_status run_pass(lr_wavefront *w, VkPipeline trace, uint32_t generation,
+                          struct gpu_work *work, const uint32_t groups[3], uint32_t rays,
+                          lr_error *error)
+{
+    lr_status status = open_generation(w, generation, error);
+    if (!status)
+        status = lr_commands_begin(w->device, error);
+    if (status)
+        return status;
+    VkDescriptorSet set = w->queues[generation].set;
+    reset_counters(w);
+    lr_commands_barrier(w->device);
+    lr_commands_dispatch(w->device, &w->layout, trace, set, work, groups[0], groups[1], groups[2]);
+    if (w->scatter) {
+        lr_commands_barrier(w->device);
+        lr_commands_dispatch_indirect(w->device, &w->layout, w->scatter, set, work, &w->counters,
+                                      offsetof(struct gpu_counters, hit_groups));
+    }
+    record_light(w, work, set);
+    lr_commands_barrier(w->device);
+    lr_commands_copy(w->device, &w->counters, &w->counters_host, sizeof(struct gpu_counters));
+    status = lr_commands_finish(w->device, error);
+    if (!status)
+        status = take_counts(w, rays, generation, error);
+    return status;
+}
+
+/* Traces the queues until all are empty, the deepest first. */
+static lr_status drain_queues(lr_wavefront *w, lr_pass_done done, void *user, double fraction,
+                              lr_error *error)
+{
+    uint32_t generation = 1;
+    while (generation > 0) {
+        lr_queue *queue = &w->queues[generation];
+        if (queue->count == 0) {
+            generation--;
+            continue;
+        }
+        if (generation + 1 == LR_GENERATIONS_MAX)
+            return lr_fail(error, LR_ERROR_DEVICE, "the ray tree did not end");
+        uint32_t rays = at_most(queue->count, w->chunk_rays);
+        queue->count -= rays;
+        struct gpu_work work = {.count = rays, .first = queue->count};
+        uint32_t groups[3] = {groups_for(rays, LR_GROUP_SIZE), 1, 1};
+        lr_status status = run_pass(w, w->trace, generation, &work, groups, rays, error);
+        if (status)
+            return status;
+        if (!done(user, fraction))
+            return lr_fail(error, LR_ERROR_INTERRUPTED, "interrupted");
+        generation++;
+    }
+    return LR_OK;
+}
+
+static lr_status read_film(lr_wavefront *w, const lr_tile *tile, uint32_t samples,
+                           lr_error *error)
+{
+    double start = lr_now();
+    uint32_t pixels = tile->width * tile->height;
+    lr_status status = lr_commands_begin(w->device, error);
+    if (status)
+        return status;
+    lr_commands_copy(w->device, &w->film, &w->film_host, 4ull * LR_FILM_WORDS * pixels);
+    status = lr_commands_finish(w->device, error);
+    const uint32_t *film = w->film_host.mapped;
+    for (uint32_t i = 0; !status && i < pixels; i++)
+        if (film[i * LR_FILM_WORDS + LR_FILM_SAMPLES] != samples)
+            status = lr_fail(error, LR_ERROR_DEVICE,
+                             "the device finished %u of %u samples of a pixel; its driver is "
+                             "faulty, try --device cpu",
+                             film[i * LR_FILM_WORDS + LR_FILM_SAMPLES], samples);
+    w->stats->read_back_seconds += lr_now() - start;
+    return status;
+}
+
+lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_pass_done done,
+                              void *user, const uint32_t **film, lr_error *error)
+{
+    lr_wavefront *w = wavefront;
+    double start = lr_now(), read_before = w->stats->read_back_seconds;
+    uint32_t pixels = tile->width * tile->height, samples = w->scene->frame.samples;
+    lr_status status = lr_commands_begin(w->device, error);
+    if (!status) {
+        lr_commands_zero(w->device, &w->film, 4ull * LR_FILM_WORDS * pixels);
+        status = lr_commands_finish(w->device, error);
+    }
+    uint32_t at_once = at_least(w->chunk_rays / pixels, 1);
+    for (uint32_t sample = 0; sample < samples && !status; sample += at_once) {
+        uint32_t count = at_most(at_once, samples - sample);
+        struct gpu_work work = {.tile_x = tile->x,
+                                .tile_y = tile->y,
+                                .tile_width = tile->width,
+                                .tile_height = tile->height,
+                                .first_sample = sample};
+        uint32_t groups[3] = {groups_for(tile->width, LR_TILE_GROUP),
+                              groups_for(tile->height, LR_TILE_GROUP), count};
+        double fraction = (double)(sample + count) / samples;
+        status = run_pass(w, w->primary, 0, &work, groups, pixels * count, error);
+        if (!status && !done(user, fraction))
+            status = lr_fail(error, LR_ERROR_INTERRUPTED, "interrupted");
+        if (!status)
+            status = drain_queues(w, done, user, fraction, error);
+    }
+    if (!status)
+        status = read_film(w, tile, samples, error);
+    *film = w->film_host.mapped;
+    w->stats->trace_seconds +=
+        lr_now() - start - (w->stats->read_back_seconds - read_before);
+    return status;
+}

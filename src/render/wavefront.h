@@ -1,0 +1,47 @@
+/* The ray tree as queues: a pass traces one chunk of rays, lights the hits into the integer film and
+ * puts their children into the next generation's queue. The deepest queue that holds rays is always
+ * taken first, so each queue needs room for the children of one chunk only, whatever the depth. */
+#ifndef LR_RENDER_WAVEFRONT_H
+#define LR_RENDER_WAVEFRONT_H
+
+#include "gpu/program.h"
+#include "render/pack.h"
+
+/* A generation for every bounce and every hidden surface that a ray may pass. */
+#define LR_GENERATIONS_MAX 322
+
+typedef struct lr_queue {
+    lr_buffer rays; /* made when the generation is first reached */
+    VkDescriptorSet set; /* traces this queue into the next */
+    uint32_t count;
+} lr_queue;
+
+typedef struct lr_wavefront {
+    lr_device *device;
+    const lr_packed_scene *scene;
+    lr_layout layout;
+    VkPipeline primary, trace, scatter, light;
+    lr_buffer frame, rows, film, film_host, counters, counters_host, hits, lit, none;
+    lr_queue queues[LR_GENERATIONS_MAX]; /* queues[0] stays empty: camera rays are made on the fly */
+    uint32_t tile_size, chunk_rays, lights_at_once;
+    lr_render_stats *stats;
+} lr_wavefront;
+
+typedef struct lr_tile {
+    uint32_t x, y, width, height; /* of the whole picture */
+} lr_tile;
+
+/* Called between dispatches; false stops the render. */
+typedef bool (*lr_pass_done)(void *user, double tile_fraction);
+
+lr_status lr_wavefront_create(lr_device *device, const lr_packed_scene *scene,
+                              const lr_render_options *options, lr_render_stats *stats,
+                              lr_wavefront *wavefront, lr_error *error);
+void lr_wavefront_destroy(lr_wavefront *wavefront);
+
+/* Renders all samples of a tile of at most tile_size pixels a side. *film then points at
+ * LR_FILM_WORDS words a pixel, valid until the next call. */
+lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_pass_done done,
+                              void *user, const uint32_t **film, lr_error *error);
+
+#endif
