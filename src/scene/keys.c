@@ -1,0 +1,362 @@
+#include "scene/keys.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+#define COUNT(array) (sizeof(array) / sizeof((array)[0]))
+#define MEMBER(type, member) .offset = offsetof(type, member)
+#define RANGE(low, high) .minimum = (low), .maximum = (high)
+#define LENGTH RANGE(LR_LENGTH_MIN, LR_COORDINATE_MAX)
+#define COORDINATE RANGE(-LR_COORDINATE_MAX, LR_COORDINATE_MAX)
+#define COLOR RANGE(0, LR_COLOR_MAX)
+#define DEFAULT(...) .fallback = {__VA_ARGS__}
+#define RECORD(name_, doc_, fields_, kind_)                                                        \
+    {                                                                                              \
+        .name = (name_), .doc = (doc_), .fields = (fields_), .count = COUNT(fields_),              \
+        .kind = (kind_)                                                                            \
+    }
+
+/* ---- Camera, image, surroundings ----------------------------------------------------------- */
+
+static const lr_field camera_fields[] = {
+    {"from", LR_FIELD_VECTOR, 0, COORDINATE, DEFAULT(0, 1, 5), MEMBER(lr_camera, from),
+     .doc = "Where the eye is."},
+    {"to", LR_FIELD_VECTOR, 0, COORDINATE, DEFAULT(0, 0, 0), MEMBER(lr_camera, to),
+     .doc = "The point in the middle of the picture."},
+    {"up", LR_FIELD_VECTOR, LR_NONZERO | LR_DERIVED, COORDINATE, MEMBER(lr_camera, up),
+     .derived = "the scene's `up`", .doc = "The direction that is up in the picture."},
+    {"fov", LR_FIELD_NUMBER, LR_ABOVE | LR_BELOW, RANGE(0, 180), DEFAULT(40),
+     MEMBER(lr_camera, fov), .doc = "Vertical field of view in degrees."},
+};
+const lr_record lr_camera_record =
+    RECORD("camera", "Where the picture is taken from.", camera_fields, 0);
+
+static const lr_field image_fields[] = {
+    {"width", LR_FIELD_INTEGER, 0, RANGE(1, 32768), DEFAULT(640), MEMBER(lr_scene, image.width),
+     .doc = "Width in pixels."},
+    {"height", LR_FIELD_INTEGER, 0, RANGE(1, 32768), DEFAULT(480), MEMBER(lr_scene, image.height),
+     .doc = "Height in pixels."},
+    {"samples", LR_FIELD_INTEGER, 0, RANGE(1, 65536), DEFAULT(1), MEMBER(lr_scene, image.samples),
+     .doc = "Rays through each pixel; more give smoother edges."},
+    {"depth", LR_FIELD_INTEGER, 0, RANGE(0, 64), DEFAULT(6), MEMBER(lr_scene, image.depth),
+     .doc = "Bounces: how often a ray may be reflected or refracted; 0 is only what the eye sees."},
+    {"seed", LR_FIELD_INTEGER, 0, RANGE(0, 4294967295.0), DEFAULT(0), MEMBER(lr_scene, image.seed),
+     .doc = "Chooses among the equally good random sample positions."},
+    {"min_weight", LR_FIELD_NUMBER, 0, RANGE(0, 1), DEFAULT(0), MEMBER(lr_scene, image.min_weight),
+     .doc = "Rays that would change the pixel by less than this share are not traced."},
+    {"exposure", LR_FIELD_NUMBER, 0, RANGE(-64, 64), DEFAULT(0), MEMBER(lr_scene, image.exposure),
+     .doc = "In stops: the written picture is brighter by 2^exposure."},
+};
+const lr_record lr_image_record = RECORD("image", "The picture to be made.", image_fields, 0);
+
+static const lr_field fog_fields[] = {
+    {"color", LR_FIELD_COLOR, 0, COLOR, DEFAULT(0.5, 0.5, 0.5), MEMBER(lr_scene, fog_color),
+     .doc = "What distance fades to."},
+    {"density", LR_FIELD_NUMBER, LR_REQUIRED, RANGE(0, LR_COLOR_MAX), MEMBER(lr_scene, fog_density),
+     .doc = "Per metre: exp(-density * distance) is not fog."},
+};
+const lr_record lr_fog_record = RECORD("fog", "Fog outside of all objects.", fog_fields, 0);
+
+static const lr_field background_fields[] = {
+    {"gradient", LR_FIELD_COLORS, LR_REQUIRED, COLOR, MEMBER(lr_scene, background),
+     .doc = "Two colours: looking straight down and straight up."},
+};
+const lr_record lr_background_record =
+    RECORD("background", "What rays see that hit nothing.", background_fields, 0);
+
+/* ---- Patterns and materials ---------------------------------------------------------------- */
+
+static const char *const spaces[] = {"world", "object", NULL};
+static const char *const highlights[] = {"blinn", "phong", NULL};
+
+#define SPACE                                                                                      \
+    {                                                                                              \
+        "space", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_pattern_draft, space),                  \
+            .choices = spaces,                                                                     \
+            .doc = "Fixed in the world, or moved along with the object's transform."               \
+    }
+#define PATTERN_COLORS(name_, doc_)                                                                \
+    {                                                                                              \
+        name_, LR_FIELD_COLORS, LR_REQUIRED, COLOR, MEMBER(lr_pattern_draft, pattern.colors),      \
+            .doc = (doc_)                                                                          \
+    }
+#define SIZE(doc_)                                                                                 \
+    {                                                                                              \
+        "size", LR_FIELD_NUMBER, 0, LENGTH, DEFAULT(1), MEMBER(lr_pattern_draft, pattern.size),    \
+            .doc = (doc_)                                                                          \
+    }
+
+static const lr_field checker_fields[] = {
+    PATTERN_COLORS("checker", "The two colours of the cells."),
+    SIZE("Edge of a cell."),
+    SPACE,
+};
+static const lr_field stripes_fields[] = {
+    PATTERN_COLORS("stripes", "The two colours of the stripes."),
+    SIZE("Width of a stripe."),
+    {"direction", LR_FIELD_VECTOR, LR_NONZERO, COORDINATE, DEFAULT(1, 0, 0),
+     MEMBER(lr_pattern_draft, pattern.direction), .doc = "Across the stripes."},
+    SPACE,
+};
+static const lr_field gradient_fields[] = {
+    PATTERN_COLORS("gradient", "The colours at `from` and at `to`, blended in between."),
+    {"from", LR_FIELD_VECTOR, 0, COORDINATE, DEFAULT(0, 0, 0),
+     MEMBER(lr_pattern_draft, pattern.origin), .doc = "Where the first colour ends."},
+    {"to", LR_FIELD_VECTOR, 0, COORDINATE, DEFAULT(0, 1, 0), MEMBER(lr_pattern_draft, to),
+     .doc = "Where the second colour begins."},
+    SPACE,
+};
+static const lr_field rings_fields[] = {
+    PATTERN_COLORS("rings", "The two colours of the rings."),
+    SIZE("Width of a ring."),
+    {"center", LR_FIELD_VECTOR, 0, COORDINATE, DEFAULT(0, 0, 0),
+     MEMBER(lr_pattern_draft, pattern.origin), .doc = "A point on the axis."},
+    {"axis", LR_FIELD_VECTOR, LR_NONZERO, COORDINATE, DEFAULT(0, 1, 0),
+     MEMBER(lr_pattern_draft, pattern.direction), .doc = "What the rings run around."},
+    SPACE,
+};
+const lr_record lr_pattern_records[] = {
+    RECORD("checker", "Cubes in two colours.", checker_fields, LR_PATTERN_CHECKER),
+    RECORD("stripes", "Slabs in two colours.", stripes_fields, LR_PATTERN_STRIPES),
+    RECORD("gradient", "A blend along a line.", gradient_fields, LR_PATTERN_GRADIENT),
+    RECORD("rings", "Cylinders around an axis in two colours.", rings_fields, LR_PATTERN_RINGS),
+};
+const uint32_t lr_pattern_record_count = COUNT(lr_pattern_records);
+
+static const lr_field material_fields[] = {
+    {"color", LR_FIELD_PAINT, 0, COLOR, DEFAULT(0.8, 0.8, 0.8), MEMBER(lr_material, color),
+     .doc = "The colour of the surface: a colour or a pattern."},
+    {"ambient", LR_FIELD_COLOR, LR_DERIVED, COLOR, MEMBER(lr_material, ambient),
+     .derived = "the same as `diffuse`", .doc = "Share of the scene's ambient light."},
+    {"diffuse", LR_FIELD_COLOR, LR_DERIVED, COLOR, MEMBER(lr_material, diffuse),
+     .derived = "what `reflect` and `transmit` leave over of 1", .doc = "Share of matt shading."},
+    {"specular", LR_FIELD_COLOR, 0, COLOR, DEFAULT(0), MEMBER(lr_material, specular),
+     .doc = "Strength of the highlight of each light."},
+    {"shininess", LR_FIELD_NUMBER, 0, RANGE(0, 1e6), DEFAULT(32), MEMBER(lr_material, shininess),
+     .doc = "Exponent of the highlight; larger is smaller and sharper."},
+    {"highlight", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_material, highlight),
+     .choices = highlights, .doc = "The highlight's formula."},
+    {"reflect", LR_FIELD_COLOR, 0, RANGE(0, 1), DEFAULT(0), MEMBER(lr_material, reflect),
+     .doc = "Weight of the mirrored ray."},
+    {"transmit", LR_FIELD_COLOR, 0, RANGE(0, 1), DEFAULT(0), MEMBER(lr_material, transmit),
+     .doc = "Weight of the ray that goes through."},
+    {"ior", LR_FIELD_NUMBER, 0, RANGE(0.01, 100), DEFAULT(1.5), MEMBER(lr_material, ior),
+     .doc = "Index of refraction of the inside."},
+    {"fresnel", LR_FIELD_BOOLEAN, 0, DEFAULT(0), MEMBER(lr_material, fresnel),
+     .doc = "Share light between mirroring and transmission by angle, as glass does."},
+    {"absorption", LR_FIELD_COLOR, 0, COLOR, DEFAULT(0), MEMBER(lr_material, absorption),
+     .doc = "Per metre inside: what is left is exp(-absorption * distance)."},
+    {"priority", LR_FIELD_INTEGER, 0, RANGE(-100, 100), DEFAULT(0), MEMBER(lr_material, priority),
+     .doc = "Where media overlap, the higher one fills the overlap."},
+};
+const lr_record lr_material_record =
+    RECORD("material", "How a surface and its inside look.", material_fields, 0);
+
+/* ---- Lights -------------------------------------------------------------------------------- */
+
+#define LIGHT_COLOR                                                                                \
+    {                                                                                              \
+        "color", LR_FIELD_COLOR, 0, COLOR, DEFAULT(1, 1, 1), MEMBER(lr_light_draft, light.color),  \
+            .doc = "Colour of the light."                                                          \
+    }
+#define LIGHT_INTENSITY                                                                            \
+    {                                                                                              \
+        "intensity", LR_FIELD_NUMBER, 0, RANGE(0, LR_COLOR_MAX), DEFAULT(1),                       \
+            MEMBER(lr_light_draft, light.intensity), .doc = "Brightness at distance 1."            \
+    }
+#define LIGHT_FALLOFF                                                                              \
+    {                                                                                              \
+        "falloff", LR_FIELD_NUMBER, 0, RANGE(0, 16), DEFAULT(2),                                   \
+            MEMBER(lr_light_draft, light.falloff),                                                 \
+            .doc = "Exponent: the light fades with 1 / distance^falloff."                          \
+    }
+#define LIGHT_SHADOWS                                                                              \
+    {                                                                                              \
+        "shadows", LR_FIELD_BOOLEAN, 0, DEFAULT(1), MEMBER(lr_light_draft, light.shadows),         \
+            .doc = "Whether objects block this light."                                             \
+    }
+#define LIGHT_POSITION                                                                             \
+    {                                                                                              \
+        "position", LR_FIELD_VECTOR, LR_REQUIRED, COORDINATE,                                      \
+            MEMBER(lr_light_draft, light.position), .doc = "Where the light is."                   \
+    }
+
+static const lr_field point_fields[] = {
+    LIGHT_POSITION, LIGHT_COLOR, LIGHT_INTENSITY, LIGHT_FALLOFF, LIGHT_SHADOWS,
+};
+static const lr_field directional_fields[] = {
+    {"direction", LR_FIELD_VECTOR, LR_REQUIRED | LR_NONZERO, COORDINATE,
+     MEMBER(lr_light_draft, light.direction), .doc = "The way the light travels."},
+    LIGHT_COLOR,
+    LIGHT_INTENSITY,
+    LIGHT_SHADOWS,
+};
+static const lr_field spot_fields[] = {
+    LIGHT_POSITION,
+    {"to", LR_FIELD_VECTOR, LR_DERIVED, COORDINATE, MEMBER(lr_light_draft, to),
+     .derived = "from `direction`", .doc = "A point on the axis; this or `direction`."},
+    {"direction", LR_FIELD_VECTOR, LR_NONZERO | LR_DERIVED, COORDINATE,
+     MEMBER(lr_light_draft, light.direction), .derived = "from `to`",
+     .doc = "The way the light travels along the axis; this or `to`."},
+    {"angle", LR_FIELD_NUMBER, LR_ABOVE, RANGE(0, 90), DEFAULT(30),
+     MEMBER(lr_light_draft, light.angle), .doc = "Degrees from the axis to the edge."},
+    {"inner", LR_FIELD_NUMBER, LR_DERIVED, RANGE(0, 90), MEMBER(lr_light_draft, light.inner),
+     .derived = "0.8 * `angle`", .doc = "Degrees from the axis to where the light begins to fade."},
+    LIGHT_COLOR,
+    LIGHT_INTENSITY,
+    LIGHT_FALLOFF,
+    LIGHT_SHADOWS,
+};
+const lr_record lr_light_records[] = {
+    RECORD("point", "Shines from a point in all directions.", point_fields, LR_LIGHT_POINT),
+    RECORD("directional", "Shines from infinitely far away.", directional_fields,
+           LR_LIGHT_DIRECTIONAL),
+    RECORD("spot", "Shines from a point in a cone.", spot_fields, LR_LIGHT_SPOT),
+};
+const uint32_t lr_light_record_count = COUNT(lr_light_records);
+
+/* ---- Objects ------------------------------------------------------------------------------- */
+
+#define OBJECT(member) MEMBER(lr_object_draft, object.member)
+#define TRANSFORM                                                                                  \
+    {"scale",                                                                                      \
+     LR_FIELD_SCALE,                                                                               \
+     LR_NONZERO,                                                                                   \
+     COORDINATE,                                                                                   \
+     DEFAULT(1, 1, 1),                                                                             \
+     MEMBER(lr_object_draft, scale),                                                               \
+     .doc = "Factor, or one along each axis; about the origin; applied first."},                   \
+        {"rotate",                                                                                 \
+         LR_FIELD_ROTATE,                                                                          \
+         0,                                                                                        \
+         RANGE(-1e6, 1e6),                                                                         \
+         DEFAULT(0, 0, 0),                                                                         \
+         MEMBER(lr_object_draft, rotate),                                                          \
+         .doc = "Degrees about x, then y, then z, or {axis, angle}; about the origin; second."},   \
+    {                                                                                              \
+        "translate", LR_FIELD_VECTOR, 0, COORDINATE, DEFAULT(0, 0, 0),                             \
+            MEMBER(lr_object_draft, translate), .doc = "Moves it; applied last."                   \
+    }
+#define PLACEMENT                                                                                  \
+    {"material", LR_FIELD_MATERIAL, LR_DERIVED, .derived = "the group's, else grey",               \
+     .doc = "The name of one of `materials`, or a material written here."},                        \
+        {"shadow",   LR_FIELD_BOOLEAN, 0,                                                          \
+         DEFAULT(1), OBJECT(shadow),   .doc = "Whether it casts shadows."},                        \
+        TRANSFORM
+#define POINT(name_, member_, doc_)                                                                \
+    { name_, LR_FIELD_VECTOR, LR_REQUIRED, COORDINATE, OBJECT(member_), .doc = (doc_) }
+#define OPEN                                                                                       \
+    { "open", LR_FIELD_BOOLEAN, 0, DEFAULT(0), OBJECT(open), .doc = "Without the end caps." }
+
+static const lr_field sphere_fields[] = {
+    {"center", LR_FIELD_VECTOR, 0, COORDINATE, DEFAULT(0, 0, 0), OBJECT(sphere.center),
+     .doc = "The centre."},
+    {"radius", LR_FIELD_NUMBER, 0, LENGTH, DEFAULT(1), OBJECT(sphere.radius), .doc = "The radius."},
+    PLACEMENT,
+};
+static const lr_field plane_fields[] = {
+    {"normal", LR_FIELD_VECTOR, LR_NONZERO, COORDINATE, DEFAULT(0, 1, 0), OBJECT(plane.normal),
+     .doc = "At right angles to the plane, away from the half-space it fills."},
+    {"offset", LR_FIELD_NUMBER, 0, COORDINATE, DEFAULT(0), OBJECT(plane.offset),
+     .doc = "The plane is where normal . p = offset."},
+    PLACEMENT,
+};
+static const lr_field box_fields[] = {
+    POINT("min", box.min, "The corner with the smallest coordinates."),
+    POINT("max", box.max, "The corner with the largest coordinates."),
+    PLACEMENT,
+};
+static const lr_field disk_fields[] = {
+    {"center", LR_FIELD_VECTOR, 0, COORDINATE, DEFAULT(0, 0, 0), OBJECT(disk.center),
+     .doc = "The centre."},
+    {"normal", LR_FIELD_VECTOR, LR_NONZERO, COORDINATE, DEFAULT(0, 1, 0), OBJECT(disk.normal),
+     .doc = "At right angles to the disk."},
+    {"radius", LR_FIELD_NUMBER, 0, LENGTH, DEFAULT(1), OBJECT(disk.radius), .doc = "The radius."},
+    PLACEMENT,
+};
+static const lr_field rectangle_fields[] = {
+    POINT("corner", rectangle.corner, "One corner."),
+    POINT("u", rectangle.u, "The edge from the corner to the next one."),
+    POINT("v", rectangle.v, "The other edge from the corner."),
+    PLACEMENT,
+};
+static const lr_field cylinder_fields[] = {
+    POINT("from", cone.from, "The centre of one end."),
+    POINT("to", cone.to, "The centre of the other end."),
+    {"radius", LR_FIELD_NUMBER, 0, LENGTH, DEFAULT(1), OBJECT(cone.radius_from),
+     .doc = "The radius."},
+    OPEN,
+    PLACEMENT,
+};
+static const lr_field cone_fields[] = {
+    POINT("from", cone.from, "The centre of the base."),
+    POINT("to", cone.to, "The tip, or the centre of the top."),
+    {"radius", LR_FIELD_NUMBER, 0, RANGE(0, LR_COORDINATE_MAX), DEFAULT(1),
+     OBJECT(cone.radius_from), .doc = "The radius at `from`."},
+    {"top_radius", LR_FIELD_NUMBER, 0, RANGE(0, LR_COORDINATE_MAX), DEFAULT(0),
+     OBJECT(cone.radius_to), .doc = "The radius at `to`; not 0 when `radius` is."},
+    OPEN,
+    PLACEMENT,
+};
+static const lr_field triangle_fields[] = {
+    POINT("a", triangle.a, "A corner."),
+    POINT("b", triangle.b, "The next, counter-clockwise as seen from the front."),
+    POINT("c", triangle.c, "The last."),
+    PLACEMENT,
+};
+const lr_record lr_object_records[] = {
+    RECORD("sphere", "A ball.", sphere_fields, LR_SPHERE),
+    RECORD("plane", "An endless plane.", plane_fields, LR_PLANE),
+    RECORD("box", "A box along the axes.", box_fields, LR_BOX),
+    RECORD("disk", "A flat round disk.", disk_fields, LR_DISK),
+    RECORD("rectangle", "A flat parallelogram.", rectangle_fields, LR_RECTANGLE),
+    RECORD("cylinder", "A round bar between two points.", cylinder_fields, LR_CYLINDER),
+    RECORD("cone", "A cone, or a cut-off one with `top_radius`.", cone_fields, LR_CONE),
+    RECORD("triangle", "A flat triangle.", triangle_fields, LR_TRIANGLE),
+};
+const uint32_t lr_object_record_count = COUNT(lr_object_records);
+
+static const lr_field rotation_fields[] = {
+    {"axis", LR_FIELD_VECTOR, LR_REQUIRED | LR_NONZERO, COORDINATE, MEMBER(lr_rotation_draft, axis),
+     .doc = "What to turn about, through the origin."},
+    {"angle", LR_FIELD_NUMBER, LR_REQUIRED, RANGE(-1e6, 1e6), MEMBER(lr_rotation_draft, angle),
+     .doc = "Degrees, counter-clockwise as seen against the axis."},
+};
+const lr_record lr_rotation_record =
+    RECORD("rotate", "A rotation about any axis.", rotation_fields, 0);
+
+static const lr_field group_fields[] = {
+    {"objects", LR_FIELD_OBJECTS, LR_REQUIRED, .doc = "The objects and groups in it."},
+    {"material", LR_FIELD_MATERIAL, LR_DERIVED, .derived = "the group's around it, else grey",
+     .doc = "For the objects in it that have none."},
+    TRANSFORM,
+};
+const lr_record lr_group_record =
+    RECORD("group", "Several objects that are moved together.", group_fields, -1);
+
+/* ---- The scene ----------------------------------------------------------------------------- */
+
+static const lr_field scene_fields[] = {
+    {"lavaray", LR_FIELD_NUMBER, 0, RANGE(1, 1), DEFAULT(1), MEMBER(lr_scene_draft, version),
+     .doc = "The version of the scene language."},
+    {"camera", LR_FIELD_RECORD, LR_DERIVED, .record = &lr_camera_record,
+     .derived = "required, unless there are `cameras`", .doc = "The only camera."},
+    {"cameras", LR_FIELD_CAMERAS, LR_DERIVED, .derived = "required, unless there is a `camera`",
+     .doc = "Several cameras by name; the first is used unless another is asked for."},
+    {"image", LR_FIELD_RECORD, 0, .record = &lr_image_record, .doc = "The picture to be made."},
+    {"ambient", LR_FIELD_COLOR, 0, COLOR, DEFAULT(0.1, 0.1, 0.1),
+     MEMBER(lr_scene_draft, scene.ambient), .doc = "Light that is everywhere."},
+    {"background", LR_FIELD_BACKGROUND, 0, COLOR, DEFAULT(1, 1, 1, 0.4, 0.6, 1),
+     .record = &lr_background_record,
+     .doc = "What rays see that hit nothing: a colour, or a gradient from below to above."},
+    {"fog", LR_FIELD_RECORD, LR_DERIVED, .record = &lr_fog_record, .derived = "no fog",
+     .doc = "Fog outside of all objects."},
+    {"up", LR_FIELD_VECTOR, LR_NONZERO, COORDINATE, DEFAULT(0, 1, 0), MEMBER(lr_scene_draft, up),
+     .doc = "Up for the background's gradient and for cameras that do not say."},
+    {"materials", LR_FIELD_MATERIALS, 0, .doc = "Materials by name."},
+    {"lights", LR_FIELD_LIGHTS, LR_DERIVED, .derived = "one light that suits the camera",
+     .doc = "The lights; an empty list is a scene without any."},
+    {"objects", LR_FIELD_OBJECTS, LR_REQUIRED, .doc = "What there is to see; at least one."},
+};
+const lr_record lr_scene_record = RECORD("the scene", "A scene of lavaray.", scene_fields, 0);

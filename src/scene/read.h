@@ -1,0 +1,87 @@
+/* From the tree of nodes to the scene: what the parts of the reader share. Functions named read
+ * return false after reporting at least one error; the value is then unchanged or the default. */
+#ifndef LR_SCENE_READ_H
+#define LR_SCENE_READ_H
+
+#include "scene/keys.h"
+#include "scene/names.h"
+#include "scene/node.h"
+
+#include <locale.h>
+
+typedef struct lr_reader {
+    lr_report *report;
+    lr_scene *scene;
+    locale_t locale;    /* "C", whatever the program chose */
+    lr_names materials; /* names to indices of scene->materials */
+    uint32_t material_capacity, object_capacity, light_capacity, camera_capacity;
+    uint32_t default_material; /* UINT32_MAX until an object needs it */
+    uint32_t nesting;          /* of groups */
+    bool full;                 /* too many objects or materials: reported, reading has stopped */
+} lr_reader;
+
+#define LR_GROUP_NESTING_MAX 32
+
+/* "a list", "the text "abc"", ... for messages. Returns buffer. */
+const char *lr_node_describe(const lr_node *node, char buffer[LR_SHOWN_MAX + 32]);
+
+/* Reports `what` as wrong at the node: "radius is a list, expected a number ...". An empty value
+ * and the common slips of YAML get messages of their own. */
+void lr_report_type(lr_reader *reader, const lr_node *node, const char *what, const char *expected);
+
+/* Reports a name that is not one of those offered to the search. */
+void lr_report_unknown(lr_reader *reader, const lr_node *node, const char *message,
+                       const lr_nearest *nearest);
+
+/* Reads a value of one of the stored field types to `out`. */
+bool lr_read_value(lr_reader *reader, const lr_node *node, const lr_field *field, void *out);
+
+/* A finite number within the field's range. */
+bool lr_read_number(lr_reader *reader, const lr_node *node, const lr_field *field, const char *what,
+                    double *value);
+bool lr_read_color(lr_reader *reader, const lr_node *node, const lr_field *field, const char *what,
+                   lr_color *color);
+
+/* Two colours, reported as `what`. */
+bool lr_read_colors(lr_reader *reader, const lr_node *node, const lr_field *field,
+                    lr_color colors[2]);
+
+/* What a record's mapping gave, by the index of the field; NULL: not given. */
+typedef struct lr_given {
+    const lr_node *values[LR_FIELDS_MAX];
+    bool valid; /* every stored value was read and nothing required is missing */
+} lr_given;
+
+/* Fills the defaults into base, then reads the mapping's stored fields over them, reporting unknown
+ * keys, wrong values and missing required keys (at `at`). Structural fields are left to the caller
+ * in *given. False when the node is no mapping or anything was wrong. */
+bool lr_read_record(lr_reader *reader, const lr_node *node, const lr_node *at,
+                    const lr_record *record, void *base, lr_given *given);
+void lr_record_defaults(const lr_record *record, void *base);
+const lr_node *lr_given_value(const lr_given *given, const lr_record *record, const char *name);
+
+/* Of an item such as {sphere: {...}}: the record that its key names and the value. NULL after
+ * reporting. `extra` is one more record to look among, or NULL. */
+const lr_record *lr_read_kind(lr_reader *reader, const lr_node *item, const char *what,
+                              const lr_record *records, uint32_t count, const lr_record *extra,
+                              const lr_node **key, const lr_node **value);
+
+void lr_read_materials(lr_reader *reader, const lr_node *node);
+/* The material that `node`, a name or a mapping, stands for; UINT32_MAX after reporting. */
+uint32_t lr_read_material_use(lr_reader *reader, const lr_node *node);
+/* The material of objects that name none; UINT32_MAX when memory is out. */
+uint32_t lr_default_material(lr_reader *reader);
+
+void lr_read_lights(lr_reader *reader, const lr_node *node);
+void lr_read_objects(lr_reader *reader, const lr_node *node);
+
+/* Checks of shapes, at the best node; false after reporting. */
+bool lr_check_shape(lr_reader *reader, const lr_object *object, const lr_record *record,
+                    const lr_given *given, const lr_node *at);
+bool lr_check_extent(lr_reader *reader, const lr_object *object, const lr_node *at);
+/* Whether b is zero or along a, to within a millionth of a radian. */
+bool lr_parallel(lr_vec3 a, lr_vec3 b);
+
+void lr_read_scene(lr_reader *reader, const lr_node *root);
+
+#endif

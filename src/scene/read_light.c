@@ -1,0 +1,74 @@
+/* Lights. */
+#include "scene/read.h"
+
+#include "base/memory.h"
+
+static bool complete_spot(lr_reader *reader, const lr_record *record, const lr_given *given,
+                          const lr_node *at, lr_light_draft *draft) {
+    const lr_node *to = lr_given_value(given, record, "to");
+    const lr_node *direction = lr_given_value(given, record, "direction");
+    const lr_node *inner = lr_given_value(given, record, "inner");
+    lr_light *light = &draft->light;
+    if (to && direction) {
+        lr_report_add(reader->report, direction->offset,
+                      "the spot has both \"to\" and \"direction\", expected one of them");
+        return false;
+    }
+    if (!to && !direction) {
+        lr_report_add(reader->report, at->offset,
+                      "the spot has no \"to\" and no \"direction\", expected one of them");
+        return false;
+    }
+    if (to)
+        light->direction = lr_vec3_sub(draft->to, light->position);
+    if (!(lr_vec3_length(light->direction) >= LR_LENGTH_MIN)) {
+        lr_report_add(reader->report, (to ? to : direction)->offset,
+                      "the spot's \"to\" is its position, expected another point");
+        return false;
+    }
+    if (!inner)
+        light->inner = 0.8 * light->angle;
+    if (light->inner > light->angle) {
+        lr_report_add(reader->report, inner->offset,
+                      "inner is %.10g, expected at most the angle, %.10g", light->inner,
+                      light->angle);
+        return false;
+    }
+    return true;
+}
+
+void lr_read_lights(lr_reader *reader, const lr_node *node) {
+    lr_scene *scene = reader->scene;
+    if (node->kind != LR_NODE_LIST) {
+        lr_report_type(reader, node, "lights",
+                       node->kind == LR_NODE_MAP
+                           ? "a list: begin each light with a dash, `- point: {...}`"
+                           : "a list of lights such as `- point: {position: [4, 6, 3]}`, or []");
+        return;
+    }
+    if (node->count > LR_LIGHTS_MAX) {
+        lr_report_add(reader->report, node->offset, "%u lights, expected at most %d", node->count,
+                      LR_LIGHTS_MAX);
+        return;
+    }
+    for (uint32_t i = 0; i < node->count; i++) {
+        const lr_node *key, *value;
+        const lr_record *record = lr_read_kind(reader, node->items[i], "light", lr_light_records,
+                                               lr_light_record_count, NULL, &key, &value);
+        lr_light_draft draft = {0};
+        lr_given given;
+        if (!record || !lr_read_record(reader, value, key, record, &draft, &given))
+            continue;
+        draft.light.kind = (lr_light_kind)record->kind;
+        draft.light.line = key->line;
+        if (draft.light.kind == LR_LIGHT_SPOT &&
+            !complete_spot(reader, record, &given, key, &draft))
+            continue;
+        if (!lr_array_reserve((void **)&scene->lights, scene->light_count, &reader->light_capacity,
+                              sizeof *scene->lights)) {
+            reader->report->no_memory = true;
+            return;
+        }
+        scene->lights[scene->light_count++] = draft.light;
+    }
+}

@@ -1,0 +1,220 @@
+/* Materials and their patterns. */
+#include "scene/read.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The colour of a material: a colour, or a mapping with a key that names a pattern. */
+static bool read_paint(lr_reader *reader, const lr_node *node, const lr_field *field,
+                       lr_pattern *pattern) {
+    char expected[LR_EXPECTED_MAX];
+    if (node->kind == LR_NODE_EMPTY) {
+        lr_report_type(reader, node, field->name, lr_field_expected(field, expected));
+        return false;
+    }
+    if (node->kind != LR_NODE_MAP)
+        return lr_read_color(reader, node, field, field->name, &pattern->colors[0]);
+    const lr_record *record = NULL;
+    for (uint32_t i = 0; i < lr_pattern_record_count && !record; i++)
+        for (uint32_t k = 0; k < node->count && !record; k++)
+            if (strcmp(lr_map_key(node, k)->text, lr_pattern_records[i].name) == 0)
+                record = &lr_pattern_records[i];
+    if (!record) {
+        lr_nearest nearest = {0};
+        const lr_node *at = node->count ? lr_map_key(node, 0) : node;
+        for (uint32_t k = 0; k < node->count && !nearest.best; k++) {
+            at = lr_map_key(node, k);
+            nearest = (lr_nearest){.text = at->text, .length = at->count};
+            for (uint32_t i = 0; i < lr_pattern_record_count; i++)
+                lr_nearest_offer(&nearest, lr_pattern_records[i].name);
+        }
+        lr_report_unknown(reader, nearest.best ? at : node,
+                          "color has no pattern, expected checker, stripes, gradient or rings",
+                          &nearest);
+        return false;
+    }
+    lr_pattern_draft draft = {.pattern.direction = {0, 1, 0}, .pattern.size = 1};
+    lr_given given;
+    if (!lr_read_record(reader, node, node, record, &draft, &given))
+        return false;
+    *pattern = draft.pattern;
+    pattern->kind = (lr_pattern_kind)record->kind;
+    pattern->object_space = draft.space == 1;
+    if (pattern->kind == LR_PATTERN_GRADIENT) {
+        pattern->direction = lr_vec3_sub(draft.to, pattern->origin);
+        if (!(lr_vec3_length(pattern->direction) >= LR_LENGTH_MIN)) {
+            const lr_node *to = lr_given_value(&given, record, "to");
+            const lr_node *from = lr_given_value(&given, record, "from");
+            lr_report_add(reader->report,
+                          (to     ? to
+                           : from ? from
+                                  : node)
+                              ->offset,
+                          "the gradient's from and to are the same point, expected two");
+            return false;
+        }
+    }
+    return true;
+}
+
+static double greatest(lr_color c) {
+    return fmax(c.x, fmax(c.y, c.z));
+}
+
+/* Reads a material over its defaults. The result is usable even when errors were reported. */
+static void read_material(lr_reader *reader, const lr_node *node, const lr_node *at,
+                          lr_material *material) {
+    const lr_record *record = &lr_material_record;
+    lr_given given;
+    *material = (lr_material){.line = at->line};
+    const double *grey = record->fields[lr_field_index(record, "color")].fallback;
+    material->color = (lr_pattern){.colors[0] = {grey[0], grey[1], grey[2]},
+                                   .colors[1] = {grey[0], grey[1], grey[2]},
+                                   .size = 1,
+                                   .direction = {0, 1, 0}};
+    lr_read_record(reader, node, at, record, material, &given);
+    const lr_node *color = lr_given_value(&given, record, "color");
+    if (color) {
+        const lr_field *field = &record->fields[lr_field_index(record, "color")];
+        read_paint(reader, color, field, &material->color);
+        if (material->color.kind == LR_PATTERN_NONE)
+            material->color.colors[1] = material->color.colors[0];
+    }
+    if (!lr_given_value(&given, record, "diffuse")) {
+        double rest = fmax(0, 1 - greatest(material->reflect) - greatest(material->transmit));
+        material->diffuse = (lr_color){rest, rest, rest};
+    }
+    if (!lr_given_value(&given, record, "ambient"))
+        material->ambient = material->diffuse;
+}
+
+/* A new material at the end of the scene's; NULL after reporting. */
+static lr_material *add_material(lr_reader *reader, size_t offset, uint32_t *index) {
+    lr_scene *scene = reader->scene;
+    if (scene->material_count == LR_MATERIALS_MAX) {
+        if (!reader->full)
+            lr_report_add(reader->report, offset, "more than %d materials", LR_MATERIALS_MAX);
+        reader->full = true;
+        return NULL;
+    }
+    if (!lr_array_reserve((void **)&scene->materials, scene->material_count,
+                          &reader->material_capacity, sizeof *scene->materials)) {
+        reader->report->no_memory = true;
+        return NULL;
+    }
+    *index = scene->material_count++;
+    return &scene->materials[*index];
+}
+
+void lr_read_materials(lr_reader *reader, const lr_node *node) {
+    if (node->kind != LR_NODE_MAP) {
+        lr_report_type(reader, node, "materials",
+                       node->kind == LR_NODE_LIST
+                           ? "a mapping of names to materials: `name: {...}`, without dashes"
+                           : "a mapping of names to materials");
+        return;
+    }
+    const lr_node *empty = NULL; /* a material without a value, just above */
+    for (uint32_t i = 0; i < node->count && !reader->full; i++) {
+        const lr_node *key = lr_map_key(node, i), *value = lr_map_value(node, i);
+        bool is_field = lr_field_find(&lr_material_record, key->text, key->count) != NULL;
+        char shown[LR_SHOWN_MAX];
+        lr_shown(shown, key->text, key->count);
+        if (is_field && value->kind != LR_NODE_MAP) {
+            if (empty) {
+                char other[LR_SHOWN_MAX];
+                lr_report_add(reader->report, key->offset,
+                              "%s belongs to material \"%s\", expected it indented deeper than "
+                              "that name",
+                              shown, lr_shown(other, empty->text, empty->count));
+            } else {
+                lr_report_add(reader->report, key->offset,
+                              "%s stands directly in materials, expected `name: {%s: ...}`", shown,
+                              shown);
+            }
+            continue;
+        }
+        uint32_t index;
+        lr_material *material = add_material(reader, key->offset, &index);
+        if (!material)
+            return;
+        if (!lr_names_put(&reader->materials, key->text, key->count, index) ||
+            !(material->name = lr_string_copy(key->text, key->count))) {
+            reader->report->no_memory = true;
+            return;
+        }
+        char *name = material->name;
+        empty = value->kind == LR_NODE_EMPTY ? key : NULL;
+        if (empty) {
+            const lr_node *next = i + 1 < node->count ? lr_map_key(node, i + 1) : NULL;
+            bool outdented = next && lr_field_find(&lr_material_record, next->text, next->count);
+            *material = (lr_material){.line = key->line};
+            if (!outdented)
+                lr_report_add(reader->report, key->offset,
+                              "material \"%s\" is empty, expected its keys, indented below it, or "
+                              "{} for the defaults",
+                              shown);
+        } else {
+            read_material(reader, value, key, material);
+        }
+        material->name = name;
+    }
+}
+
+static void report_unknown_material(lr_reader *reader, const lr_node *node) {
+    lr_report *report = reader->report;
+    if (!lr_report_has_room(report)) {
+        report->dropped++;
+        return;
+    }
+    char shown[LR_SHOWN_MAX], message[LR_SHOWN_MAX * 2];
+    lr_nearest nearest = {.text = node->text, .length = node->count};
+    const lr_scene *scene = reader->scene;
+    for (uint32_t i = 0; i < scene->material_count && i < 2000; i++)
+        if (scene->materials[i].name)
+            lr_nearest_offer(&nearest, scene->materials[i].name);
+    snprintf(message, sizeof message, "unknown material \"%s\", expected a name from materials",
+             lr_shown(shown, node->text, node->count));
+    /* Names are the author's: they may hold anything, unlike keys. */
+    char best[LR_SHOWN_MAX];
+    if (nearest.best)
+        nearest.best = lr_shown(best, nearest.best, strlen(nearest.best));
+    lr_report_unknown(reader, node, message, &nearest);
+}
+
+uint32_t lr_read_material_use(lr_reader *reader, const lr_node *node) {
+    uint32_t index;
+    if (node->kind == LR_NODE_PLAIN || node->kind == LR_NODE_QUOTED) {
+        if (lr_names_get(&reader->materials, node->text, node->count, &index))
+            return index;
+        report_unknown_material(reader, node);
+        return UINT32_MAX;
+    }
+    if (node->kind != LR_NODE_MAP) {
+        lr_report_type(reader, node, "material",
+                       "the name of a material or a mapping of material keys");
+        return UINT32_MAX;
+    }
+    lr_material *material = add_material(reader, node->offset, &index);
+    if (!material)
+        return UINT32_MAX;
+    read_material(reader, node, node, material);
+    return index;
+}
+
+uint32_t lr_default_material(lr_reader *reader) {
+    if (reader->default_material == UINT32_MAX) {
+        lr_node empty = {.kind = LR_NODE_MAP};
+        uint32_t index;
+        lr_material *material = add_material(reader, 0, &index);
+        if (!material)
+            return UINT32_MAX;
+        read_material(reader, &empty, &empty, material);
+        reader->default_material = index;
+    }
+    return reader->default_material;
+}

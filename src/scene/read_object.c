@@ -1,0 +1,139 @@
+/* Objects and groups, flattened: each object carries the transforms and the material that the
+ * groups around it give it. */
+#include "scene/read.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What a group hands down. */
+typedef struct surroundings {
+    lr_transform to_world;
+    bool transformed;
+    uint32_t material; /* UINT32_MAX: none */
+} surroundings;
+
+static void read_list(lr_reader *reader, const lr_node *node, const surroundings *around);
+
+/* The transform of the object or group in the world; false after reporting that it is singular or
+ * so extreme that it or its inverse overflows. */
+static bool compose(lr_reader *reader, const lr_object_draft *draft, const lr_record *record,
+                    const lr_given *given, const lr_node *at, const surroundings *around,
+                    lr_transform *to_world, bool *transformed) {
+    bool moved = lr_given_value(given, record, "scale") ||
+                 lr_given_value(given, record, "rotate") ||
+                 lr_given_value(given, record, "translate");
+    *transformed = around->transformed || moved;
+    if (!moved) {
+        *to_world = around->to_world;
+        return true;
+    }
+    lr_transform own = lr_transform_multiply(draft->rotate, lr_transform_scale(draft->scale));
+    own = lr_transform_multiply(lr_transform_translate(draft->translate), own);
+    *to_world = lr_transform_multiply(around->to_world, own);
+    lr_transform inverse;
+    bool usable = lr_transform_inverse(to_world, &inverse);
+    for (int i = 0; i < 3 && usable; i++)
+        for (int j = 0; j < 4 && usable; j++)
+            usable = fabs(to_world->m[i][j]) <= LR_COORDINATE_MAX && fabs(inverse.m[i][j]) <= 1e36;
+    if (!usable)
+        lr_report_add(reader->report, at->offset,
+                      "the transforms of this %s are too extreme together, expected factors and "
+                      "distances up to %g",
+                      record->name, LR_COORDINATE_MAX);
+    return usable;
+}
+
+static void read_group(lr_reader *reader, const lr_node *key, const lr_node *value,
+                       const surroundings *around) {
+    lr_object_draft draft = {0};
+    lr_given given;
+    const lr_record *record = &lr_group_record;
+    bool valid = lr_read_record(reader, value, key, record, &draft, &given);
+    const lr_node *material = lr_given_value(&given, record, "material");
+    const lr_node *objects = lr_given_value(&given, record, "objects");
+    surroundings inside = *around;
+    if (material)
+        inside.material = lr_read_material_use(reader, material);
+    valid = valid && compose(reader, &draft, record, &given, key, around, &inside.to_world,
+                             &inside.transformed);
+    /* The children are read all the same, for their own errors. */
+    if (!valid)
+        inside = *around;
+    if (!objects)
+        return;
+    if (reader->nesting == LR_GROUP_NESTING_MAX) {
+        lr_report_add(reader->report, key->offset, "groups nest more than %d deep",
+                      LR_GROUP_NESTING_MAX);
+        return;
+    }
+    reader->nesting++;
+    read_list(reader, objects, &inside);
+    reader->nesting--;
+}
+
+static void add_object(lr_reader *reader, const lr_object *object, const lr_node *at) {
+    lr_scene *scene = reader->scene;
+    if (scene->object_count == LR_OBJECTS_MAX) {
+        lr_report_add(reader->report, at->offset, "more than %d objects, groups counted out",
+                      LR_OBJECTS_MAX);
+        reader->full = true;
+        return;
+    }
+    if (!lr_array_reserve((void **)&scene->objects, scene->object_count, &reader->object_capacity,
+                          sizeof *scene->objects)) {
+        reader->report->no_memory = true;
+        reader->full = true;
+        return;
+    }
+    scene->objects[scene->object_count++] = *object;
+}
+
+static void read_object(lr_reader *reader, const lr_record *record, const lr_node *key,
+                        const lr_node *value, const surroundings *around) {
+    lr_object_draft draft = {0};
+    lr_given given;
+    bool valid = lr_read_record(reader, value, key, record, &draft, &given);
+    lr_object *object = &draft.object;
+    object->kind = (lr_object_kind)record->kind;
+    object->line = key->line;
+    const lr_node *material = lr_given_value(&given, record, "material");
+    object->material = material ? lr_read_material_use(reader, material) : around->material;
+    if (!material && object->material == UINT32_MAX)
+        object->material = lr_default_material(reader);
+    if (object->kind == LR_CYLINDER)
+        object->cone.radius_to = object->cone.radius_from;
+    /* Shapes are checked only when all their numbers are known. */
+    if (!valid || !lr_check_shape(reader, object, record, &given, key) ||
+        !compose(reader, &draft, record, &given, key, around, &object->to_world,
+                 &object->transformed) ||
+        !lr_check_extent(reader, object, key))
+        return;
+    add_object(reader, object, key);
+}
+
+static void read_list(lr_reader *reader, const lr_node *node, const surroundings *around) {
+    if (node->kind != LR_NODE_LIST || node->count == 0) {
+        lr_report_type(reader, node, "objects",
+                       node->kind == LR_NODE_MAP
+                           ? "a list: begin each object with a dash, `- sphere: {...}`"
+                           : "a list of objects such as `- sphere: {radius: 1}`");
+        return;
+    }
+    for (uint32_t i = 0; i < node->count && !reader->full; i++) {
+        const lr_node *key, *value;
+        const lr_record *record =
+            lr_read_kind(reader, node->items[i], "object", lr_object_records,
+                         lr_object_record_count, &lr_group_record, &key, &value);
+        if (record == &lr_group_record)
+            read_group(reader, key, value, around);
+        else if (record)
+            read_object(reader, record, key, value, around);
+    }
+}
+
+void lr_read_objects(lr_reader *reader, const lr_node *node) {
+    surroundings world = {.to_world = lr_transform_identity(), .material = UINT32_MAX};
+    read_list(reader, node, &world);
+}

@@ -1,0 +1,227 @@
+/* A scene from text: the top level, and the functions of the library. */
+#include "scene/read.h"
+
+#include "base/file.h"
+#include "base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static lr_camera *add_camera(lr_reader *reader) {
+    lr_scene *scene = reader->scene;
+    if (!lr_array_reserve((void **)&scene->cameras, scene->camera_count, &reader->camera_capacity,
+                          sizeof *scene->cameras)) {
+        reader->report->no_memory = true;
+        return NULL;
+    }
+    return &scene->cameras[scene->camera_count++];
+}
+
+static void read_camera(lr_reader *reader, const lr_node *node, const lr_node *name, lr_vec3 up) {
+    lr_camera *camera = add_camera(reader);
+    lr_given given;
+    if (!camera)
+        return;
+    *camera = (lr_camera){.line = name ? name->line : node->line, .up = up};
+    const lr_record *record = &lr_camera_record;
+    const lr_node *at = name ? name : node;
+    bool valid = lr_read_record(reader, node, at, record, camera, &given);
+    if (name && !(camera->name = lr_string_copy(name->text, name->count)))
+        reader->report->no_memory = true;
+    if (!valid)
+        return;
+    const lr_node *from = lr_given_value(&given, record, "from");
+    const lr_node *to = lr_given_value(&given, record, "to");
+    const lr_node *own_up = lr_given_value(&given, record, "up");
+    lr_vec3 view = lr_vec3_sub(camera->to, camera->from);
+    if (!(lr_vec3_length(view) >= LR_LENGTH_MIN))
+        lr_report_add(reader->report,
+                      (to     ? to
+                       : from ? from
+                              : at)
+                          ->offset,
+                      "the camera's from and to are the same point, expected two");
+    else if (lr_parallel(view, camera->up))
+        lr_report_add(reader->report,
+                      (own_up ? own_up
+                       : to   ? to
+                       : from ? from
+                              : at)
+                          ->offset,
+                      "the camera's up [%.10g, %.10g, %.10g] lies along its view, expected "
+                      "another direction, such as `up: [%d, 0, %d]`",
+                      camera->up.x, camera->up.y, camera->up.z,
+                      lr_parallel(view, (lr_vec3){0, 0, 1}) ? 1 : 0,
+                      lr_parallel(view, (lr_vec3){0, 0, 1}) ? 0 : -1);
+}
+
+static void read_cameras(lr_reader *reader, const lr_node *node, lr_vec3 up) {
+    if (node->kind != LR_NODE_MAP || node->count == 0) {
+        lr_report_type(reader, node, "cameras",
+                       "a mapping of names to cameras, such as `front: {from: [0, 1, 5]}`");
+        return;
+    }
+    for (uint32_t i = 0; i < node->count; i++)
+        read_camera(reader, lr_map_value(node, i), lr_map_key(node, i), up);
+}
+
+static void read_background(lr_reader *reader, const lr_node *node, const lr_field *field) {
+    lr_color *background = reader->scene->background;
+    lr_given given;
+    if (node->kind == LR_NODE_MAP) {
+        lr_read_record(reader, node, node, &lr_background_record, reader->scene, &given);
+    } else if (node->kind == LR_NODE_EMPTY) {
+        char expected[LR_EXPECTED_MAX];
+        lr_report_type(reader, node, field->name, lr_field_expected(field, expected));
+    } else if (lr_read_color(reader, node, field, field->name, &background[0])) {
+        background[1] = background[0];
+    }
+}
+
+/* Cameras are known to be given in one way or the other, else that is reported. */
+static void read_all_cameras(lr_reader *reader, const lr_node *root, const lr_given *given,
+                             lr_vec3 up) {
+    const lr_record *record = &lr_scene_record;
+    const lr_node *camera = lr_given_value(given, record, "camera");
+    const lr_node *cameras = lr_given_value(given, record, "cameras");
+    if (camera && cameras)
+        lr_report_add(reader->report, cameras->offset,
+                      "the scene has both camera and cameras, expected one of them");
+    else if (!camera && !cameras && given->valid)
+        lr_report_add(reader->report, root->offset,
+                      "the scene has no camera, expected a key such as `camera: {from: [0, 1, 5], "
+                      "to: [0, 0, 0]}`");
+    if (camera)
+        read_camera(reader, camera, NULL, up);
+    if (cameras)
+        read_cameras(reader, cameras, up);
+}
+
+void lr_read_scene(lr_reader *reader, const lr_node *root) {
+    const lr_record *record = &lr_scene_record;
+    lr_scene *scene = reader->scene;
+    lr_given given;
+    if (root->kind != LR_NODE_MAP) {
+        lr_report_type(reader, root, "the scene", "a mapping with keys such as camera and objects");
+        return;
+    }
+    lr_scene_draft draft = {0};
+    lr_read_record(reader, root, root, record, &draft, &given);
+    scene->ambient = draft.scene.ambient;
+    lr_vec3 up = lr_vec3_normalize(draft.up);
+    scene->background_up = up;
+    lr_record_defaults(&lr_image_record, scene);
+    lr_record_defaults(&lr_fog_record, scene);
+    const lr_field *sky = &record->fields[lr_field_index(record, "background")];
+    scene->background[0] = (lr_color){sky->fallback[0], sky->fallback[1], sky->fallback[2]};
+    scene->background[1] = (lr_color){sky->fallback[3], sky->fallback[4], sky->fallback[5]};
+
+    const lr_node *image = lr_given_value(&given, record, "image");
+    const lr_node *fog = lr_given_value(&given, record, "fog");
+    const lr_node *background = lr_given_value(&given, record, "background");
+    const lr_node *materials = lr_given_value(&given, record, "materials");
+    const lr_node *lights = lr_given_value(&given, record, "lights");
+    const lr_node *objects = lr_given_value(&given, record, "objects");
+    lr_given ignored;
+    read_all_cameras(reader, root, &given, draft.up);
+    if (image)
+        lr_read_record(reader, image, image, &lr_image_record, scene, &ignored);
+    if (fog)
+        lr_read_record(reader, fog, fog, &lr_fog_record, scene, &ignored);
+    if (background)
+        read_background(reader, background, sky);
+    if (materials)
+        lr_read_materials(reader, materials);
+    scene->default_light = !lights;
+    if (lights)
+        lr_read_lights(reader, lights);
+    if (objects)
+        lr_read_objects(reader, objects);
+}
+
+void lr_scene_destroy(lr_scene *scene) {
+    if (!scene)
+        return;
+    for (uint32_t i = 0; i < scene->camera_count; i++)
+        free(scene->cameras[i].name);
+    for (uint32_t i = 0; i < scene->material_count; i++)
+        free(scene->materials[i].name);
+    free(scene->cameras);
+    free(scene->materials);
+    free(scene->objects);
+    free(scene->lights);
+    free(scene->source);
+    free(scene);
+}
+
+/* Reads the report's text into the scene; what is wrong goes to the report. */
+static void read_text(lr_scene *scene, lr_report *report) {
+    if (!lr_text_check(report))
+        return;
+    lr_tree tree;
+    lr_tree_read(&tree, report);
+    lr_reader reader = {.report = report, .scene = scene, .default_material = UINT32_MAX};
+    reader.locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (!reader.locale)
+        report->no_memory = true;
+    else if (tree.root)
+        lr_read_scene(&reader, tree.root);
+    if (reader.locale)
+        freelocale(reader.locale);
+    lr_names_free(&reader.materials);
+    lr_tree_free(&tree);
+}
+
+lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_scene **scene,
+                         char **report, lr_error *error) {
+    *scene = NULL;
+    *report = NULL;
+    lr_status status = LR_OK;
+    lr_scene *read = lr_alloc(1, sizeof *read);
+    lr_report *problems = lr_alloc(1, sizeof *problems);
+    if (!read || !problems)
+        goto no_memory;
+    read->source = lr_string_copy(name, strlen(name));
+    if (!read->source)
+        goto no_memory;
+    problems->name = name;
+    problems->text = text;
+    problems->length = length;
+    read_text(read, problems);
+    if (problems->no_memory)
+        goto no_memory;
+    if (problems->count > 0) {
+        *report = lr_report_text(problems);
+        if (!*report)
+            goto no_memory;
+        uint64_t count = problems->count + problems->dropped;
+        status = lr_fail(error, LR_ERROR_SCENE, "%s: %llu error%s in the scene", name,
+                         (unsigned long long)count, count == 1 ? "" : "s");
+    } else {
+        *scene = read;
+        read = NULL;
+    }
+    goto done;
+no_memory:
+    status = lr_fail(error, LR_ERROR_MEMORY, "%s: out of memory while reading the scene", name);
+done:
+    if (problems)
+        lr_report_free(problems);
+    free(problems);
+    lr_scene_destroy(read);
+    return status;
+}
+
+lr_status lr_scene_load(const char *path, lr_scene **scene, char **report, lr_error *error) {
+    char *text;
+    size_t length;
+    *scene = NULL;
+    *report = NULL;
+    lr_status status = lr_file_read(path, LR_TEXT_MAX, &text, &length, error);
+    if (status != LR_OK)
+        return status;
+    const char *name = strcmp(path, "-") == 0 ? "<stdin>" : path;
+    status = lr_scene_parse(text, length, name, scene, report, error);
+    free(text);
+    return status;
+}
