@@ -259,7 +259,7 @@ static lr_status choose(lr_device *device, const char *select, lr_error *error)
         if (!matches(select, &info, i))
             continue;
         if (!info.usable) {
-            snprintf(unusable, sizeof unusable, "; %s lacks %s", info.name, info.missing);
+            snprintf(unusable, sizeof unusable, "; %.200s lacks %.200s", info.name, info.missing);
             continue;
         }
         int rank = preference(&device->vk, physical[i]);
