@@ -143,9 +143,8 @@ bool lr_check_extent(lr_reader *reader, const lr_object *object, const lr_node *
     }
     if (far)
         lr_report_add(reader->report, at->offset,
-                      "this object reaches beyond %g metres from the origin, expected all of it "
-                      "nearer",
-                      LR_COORDINATE_MAX);
+                      "this object reaches beyond 1e12 metres from the origin, expected all of it "
+                      "nearer");
     if (small)
         lr_report_add(reader->report, at->offset,
                       "this object is smaller than %g metres, expected it larger", LR_LENGTH_MIN);

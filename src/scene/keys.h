@@ -107,6 +107,9 @@ bool lr_key_is_known(const char *name);
 #define LR_EXPECTED_MAX 256
 const char *lr_field_expected(const lr_field *field, char buffer[LR_EXPECTED_MAX]);
 
+/* The number in ten digits, with 1e12 for 1e+12. Returns buffer. */
+const char *lr_show_number(double value, char buffer[32]);
+
 /* The default as the language writes it, such as "[0, 1, 0]"; "" when there is none. */
 const char *lr_field_default(const lr_field *field, char buffer[LR_EXPECTED_MAX]);
 

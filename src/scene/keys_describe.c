@@ -45,13 +45,24 @@ bool lr_key_is_known(const char *name) {
     return false;
 }
 
+const char *lr_show_number(double value, char buffer[32]) {
+    snprintf(buffer, 32, "%.10g", value);
+    char *plus = strchr(buffer, '+'); /* 1e+12 */
+    if (plus)
+        memmove(plus, plus + 1, strlen(plus));
+    return buffer;
+}
+
 /* "from 0 to 1", "above 0 and below 180". */
 static void describe_range(const lr_field *field, char *out, size_t size) {
+    char low[32], high[32];
+    lr_show_number(field->minimum, low);
+    lr_show_number(field->maximum, high);
     if (field->flags & (LR_ABOVE | LR_BELOW))
-        snprintf(out, size, "%s %.10g and %s %.10g", field->flags & LR_ABOVE ? "above" : "from",
-                 field->minimum, field->flags & LR_BELOW ? "below" : "at most", field->maximum);
+        snprintf(out, size, "%s %s and %s %s", field->flags & LR_ABOVE ? "above" : "from", low,
+                 field->flags & LR_BELOW ? "below" : "at most", high);
     else
-        snprintf(out, size, "from %.10g to %.10g", field->minimum, field->maximum);
+        snprintf(out, size, "from %s to %s", low, high);
 }
 
 const char *lr_field_expected(const lr_field *field, char buffer[LR_EXPECTED_MAX]) {

@@ -183,10 +183,15 @@ static void add_scalar(builder *b, struct fy_event *event, const char *anchor,
     if (!node->text)
         return;
     node->count = (uint32_t)length;
-    if (token && fy_token_scalar_style(token) != FYSS_PLAIN)
+    if (token && fy_token_scalar_style(token) != FYSS_PLAIN) {
         node->kind = LR_NODE_QUOTED;
-    else if (is_null(node->text))
+        /* The mark stands behind the opening quote. */
+        char before = node->offset > 0 ? b->report->text[node->offset - 1] : 0;
+        if (before == '"' || before == '\'')
+            node->offset--;
+    } else if (is_null(node->text)) {
         node->kind = LR_NODE_EMPTY;
+    }
     if (!start)
         place_empty(b, node);
     push(b, node);
@@ -265,7 +270,7 @@ static bool check_key(builder *b, const lr_node *key, lr_names *seen, const lr_n
 static void close_frame(builder *b) {
     frame top = b->frames[--b->depth];
     lr_node *node = top.node;
-    const lr_node **children = b->pending + top.first;
+    const lr_node **children = b->pending ? b->pending + top.first : NULL;
     uint32_t count = b->pending_count - top.first;
     node->items = tree_alloc(b->tree, count * sizeof *node->items);
     if (!node->items) {

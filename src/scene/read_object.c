@@ -40,8 +40,8 @@ static bool compose(lr_reader *reader, const lr_object_draft *draft, const lr_re
     if (!usable)
         lr_report_add(reader->report, at->offset,
                       "the transforms of this %s are too extreme together, expected factors and "
-                      "distances up to %g",
-                      record->name, LR_COORDINATE_MAX);
+                      "distances up to 1e12",
+                      record->name);
     return usable;
 }
 
