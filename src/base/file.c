@@ -16,6 +16,9 @@ enum {
     LINKS_LIMIT = 40, /* as the kernel follows */
 };
 
+/* Of a path in a message, so that a long one leaves room for the reason. */
+#define SHOWN "%.500s"
+
 static const char *shown(const char *path, const char *standard_stream) {
     return strcmp(path, "-") == 0 ? standard_stream : path;
 }
@@ -23,7 +26,7 @@ static const char *shown(const char *path, const char *standard_stream) {
 /* ---- Reading ------------------------------------------------------------------------------ */
 
 static lr_status too_large(const char *name, size_t limit, lr_error *error) {
-    return lr_fail(error, LR_ERROR_FILE, "%s: larger than the limit of %zu bytes", name, limit);
+    return lr_fail(error, LR_ERROR_FILE, SHOWN ": larger than the limit of %zu bytes", name, limit);
 }
 
 static lr_status read_all(int fd, const char *name, size_t limit, size_t expected, char **bytes,
@@ -36,7 +39,7 @@ static lr_status read_all(int fd, const char *name, size_t limit, size_t expecte
         if (got < 0 && errno == EINTR)
             continue;
         if (got < 0) {
-            lr_fail(error, LR_ERROR_FILE, "%s: %s", name, strerror(errno));
+            lr_fail(error, LR_ERROR_FILE, SHOWN ": %s", name, strerror(errno));
             free(buffer);
             return LR_ERROR_FILE;
         }
@@ -62,7 +65,7 @@ static lr_status read_all(int fd, const char *name, size_t limit, size_t expecte
         }
     }
     free(buffer);
-    return lr_fail(error, LR_ERROR_MEMORY, "%s: out of memory after %zu bytes", name, used);
+    return lr_fail(error, LR_ERROR_MEMORY, SHOWN ": out of memory after %zu bytes", name, used);
 }
 
 lr_status lr_file_read(const char *path, size_t limit, char **bytes, size_t *size,
@@ -73,14 +76,14 @@ lr_status lr_file_read(const char *path, size_t limit, char **bytes, size_t *siz
     const char *name = shown(path, "standard input");
     int fd = is_standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
     if (fd < 0)
-        return lr_fail(error, LR_ERROR_FILE, "%s: %s", name, strerror(errno));
+        return lr_fail(error, LR_ERROR_FILE, SHOWN ": %s", name, strerror(errno));
     struct stat info;
     lr_status status;
     size_t expected = 0;
     if (fstat(fd, &info) != 0) {
-        status = lr_fail(error, LR_ERROR_FILE, "%s: %s", name, strerror(errno));
+        status = lr_fail(error, LR_ERROR_FILE, SHOWN ": %s", name, strerror(errno));
     } else if (S_ISDIR(info.st_mode)) {
-        status = lr_fail(error, LR_ERROR_FILE, "%s: is a folder, not a file", name);
+        status = lr_fail(error, LR_ERROR_FILE, SHOWN ": is a folder, not a file", name);
     } else if (S_ISREG(info.st_mode) && !is_standard && (uintmax_t)info.st_size > limit) {
         status = too_large(name, limit, error);
     } else {
@@ -104,7 +107,7 @@ static lr_status write_failure(const char *name, int reason, lr_error *error) {
         remedy = ": free some space or write elsewhere";
     else if (reason == EBADF)
         remedy = ": it is closed or not open for writing";
-    return lr_fail(error, LR_ERROR_FILE, "%s: %s%s", name, strerror(reason), remedy);
+    return lr_fail(error, LR_ERROR_FILE, SHOWN ": %s%s", name, strerror(reason), remedy);
 }
 
 /* 0 or the errno of the failure. */
@@ -191,7 +194,7 @@ static lr_status create_failure(const char *path, const char *target, int reason
         break;
     }
     if (remedy)
-        return lr_fail(error, LR_ERROR_FILE, "%s: %s: %s: %s", path, strerror(reason), folder,
+        return lr_fail(error, LR_ERROR_FILE, SHOWN ": %s: %s: %s", path, strerror(reason), folder,
                        remedy);
     return write_failure(path, reason, error);
 }
@@ -291,7 +294,7 @@ lr_status lr_file_write(const char *path, const void *bytes, size_t size, lr_err
         return create_failure(path, target, errno, error);
     const char *last = target + folder_length(target);
     if ((exists && S_ISDIR(info.st_mode)) || last[0] == 0)
-        return lr_fail(error, LR_ERROR_FILE, "%s: names a folder; add a file name", path);
+        return lr_fail(error, LR_ERROR_FILE, SHOWN ": names a folder; add a file name", path);
     if (exists && !S_ISREG(info.st_mode))
         return write_directly(path, target, bytes, size, error);
     return replace(path, target, exists ? &info : NULL, bytes, size, error);
