@@ -42,11 +42,11 @@ static const lr_field image_fields[] = {
     {"depth", LR_FIELD_INTEGER, 0, RANGE(0, 64), DEFAULT(6), MEMBER(lr_scene, image.depth),
      .doc = "Bounces: how often a ray may be reflected or refracted; 0 is only what the eye sees."},
     {"seed", LR_FIELD_INTEGER, 0, RANGE(0, 4294967295.0), DEFAULT(0), MEMBER(lr_scene, image.seed),
-     .doc = "Chooses among the equally good random sample positions."},
+     .doc = "Another seed, another choice of sample positions."},
     {"min_weight", LR_FIELD_NUMBER, 0, RANGE(0, 1), DEFAULT(0), MEMBER(lr_scene, image.min_weight),
-     .doc = "Rays that would change the pixel by less than this share are not traced."},
+     .doc = "Rays whose weight in the pixel is below this are not traced."},
     {"exposure", LR_FIELD_NUMBER, 0, RANGE(-64, 64), DEFAULT(0), MEMBER(lr_scene, image.exposure),
-     .doc = "In stops: the written picture is brighter by 2^exposure."},
+     .doc = "Stops: the picture is written 2^exposure times as bright."},
 };
 const lr_record lr_image_record = RECORD("image", "The picture to be made.", image_fields, 0);
 
@@ -54,7 +54,7 @@ static const lr_field fog_fields[] = {
     {"color", LR_FIELD_COLOR, 0, COLOR, DEFAULT(0.5, 0.5, 0.5), MEMBER(lr_scene, fog_color),
      .doc = "What distance fades to."},
     {"density", LR_FIELD_NUMBER, LR_REQUIRED, RANGE(0, LR_COLOR_MAX), MEMBER(lr_scene, fog_density),
-     .doc = "Per metre: exp(-density * distance) is not fog."},
+     .doc = "Per metre: exp(-density * distance) of what lies behind is still seen."},
 };
 const lr_record lr_fog_record = RECORD("fog", "Fog outside of all objects.", fog_fields, 0);
 

@@ -66,7 +66,7 @@ static void describe_range(const lr_field *field, char *out, size_t size) {
 }
 
 const char *lr_field_expected(const lr_field *field, char buffer[LR_EXPECTED_MAX]) {
-    char range[80];
+    char range[96];
     describe_range(field, range, sizeof range);
     size_t size = LR_EXPECTED_MAX;
     switch (field->type) {

@@ -125,17 +125,40 @@ static const lr_node *waiting_key(const builder *b) {
     return top->node->kind == LR_NODE_MAP && is_value ? b->pending[b->pending_count - 1] : NULL;
 }
 
-static const char *copy_text(builder *b, struct fy_token *token, size_t *length) {
-    const char *text = token ? fy_token_get_text(token, length) : NULL;
-    if (!text)
-        *length = 0;
-    char *copy = tree_alloc(b->tree, *length + 1);
+/* Walks the pieces of a token's text, copying them to `out` unless it is NULL. Returns their total
+ * length. fy_token_get_text() of libfyaml 0.7.12 leaks for quoted text of more than ten pieces
+ * ('''''''''''''''''''''''' is one); its iterator does not. */
+static size_t walk_text(struct fy_token *token, char *out, bool *failed)
+{
+    struct fy_token_iter *iterator = fy_token_iter_create(token);
+    if (!iterator) {
+        *failed = true;
+        return 0;
+    }
+    size_t length = 0;
+    int broken = 0;
+    const struct fy_iter_chunk *chunk = NULL;
+    while ((chunk = fy_token_iter_chunk_next(iterator, chunk, &broken)) != NULL) {
+        if (out)
+            memcpy(out + length, chunk->str, chunk->len);
+        length += chunk->len;
+    }
+    fy_token_iter_destroy(iterator);
+    *failed |= broken != 0;
+    return length;
+}
+
+static const char *copy_text(builder *b, struct fy_token *token, size_t *length)
+{
+    bool failed = false;
+    *length = token ? walk_text(token, NULL, &failed) : 0;
+    char *copy = failed ? NULL : tree_alloc(b->tree, *length + 1);
     if (!copy) {
         out_of_memory(b);
         return NULL;
     }
     if (*length)
-        memcpy(copy, text, *length);
+        walk_text(token, copy, &failed);
     copy[*length] = '\0';
     return copy;
 }
