@@ -47,12 +47,8 @@ static float round_up(double x) {
  * float has 24 bits, and 2 maxval has 17. */
 static float linear_threshold(uint32_t i, uint32_t maxval) {
     double wanted = 2.0 * i + 1, scale = 2.0 * maxval;
-    uint32_t bits = float_bits((float)(wanted / scale));
-    while (bits_float(bits) * scale < wanted)
-        bits++;
-    while (bits_float(bits - 1) * scale >= wanted)
-        bits--;
-    return bits_float(bits);
+    float nearest = (float)(wanted / scale);
+    return nearest * scale < wanted ? bits_float(float_bits(nearest) + 1) : nearest;
 }
 
 lr_status lr_curve_create(lr_curve *curve, lr_transfer transfer, uint32_t maxval, lr_error *error) {

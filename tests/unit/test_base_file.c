@@ -274,13 +274,14 @@ static void test_no_permission(void **state) {
     empty_folder();
     write_text(in_folder("protected"), "old");
     assert_int_equal(chmod(in_folder("protected"), 0444), 0);
-    assert_int_equal(chmod(folder, 0555), 0);
+    assert_int_equal(mkdir(in_folder("closed"), 0555), 0);
+    assert_int_equal(chmod(folder, 0777), 0);
     pid_t child = fork();
     if (child == 0) {
         lr_error error = {0};
         if (geteuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0))
             _exit(3);
-        if (lr_file_write(in_folder("new"), "x", 1, &error) != LR_ERROR_FILE ||
+        if (lr_file_write(in_folder("closed/new"), "x", 1, &error) != LR_ERROR_FILE ||
             !strstr(error.message, "no permission to create files in this folder"))
             _exit(1);
         if (lr_file_write(in_folder("protected"), "x", 1, &error) != LR_ERROR_FILE ||
@@ -294,7 +295,7 @@ static void test_no_permission(void **state) {
     assert_true(WIFEXITED(status));
     assert_int_equal(WEXITSTATUS(status), 0);
     expect_content(in_folder("protected"), "old");
-    assert_int_equal(count_entries(), 1);
+    assert_int_equal(count_entries(), 2);
 }
 
 /* A write that fails half-way: the limit on file sizes stands in for a full disk. */

@@ -286,6 +286,14 @@ static void test_malformed(void **state) {
     expect_malformed((uint32_t[]){MAGIC, 0x10300, 0, 9, 0, 2 << 16 | 21, 1}, 7, "too few");
     expect_malformed((uint32_t[]){MAGIC, 0x10300, 0, 9, 0, 2 << 16 | 19, 1, 2 << 16 | 20, 1}, 9,
                      "second time");
+
+    /* Results that share an id do not overflow the room for decorations. */
+    uint32_t same[5 + 4 * 100] = {MAGIC, 0x10300, 0, 3, 0};
+    for (size_t at = 5; at < sizeof same / sizeof *same; at += 4)
+        memcpy(same + at, (uint32_t[]){FNEGATE, 1, 2, 1}, 16);
+    lr_spirv module = {same, sizeof same / sizeof *same}, decorated = decorate(&module);
+    assert_int_equal(decorated.count, module.count + 3);
+    lr_spirv_free(&decorated);
 }
 
 static int embed(const char *arguments) {
