@@ -37,7 +37,7 @@ static const char *in_folder(const char *name) {
     static char paths[4][512];
     static unsigned next;
     char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    snprintf(path, sizeof paths[0], "%s/%.400s", folder, name);
     return path;
 }
 

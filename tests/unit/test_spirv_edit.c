@@ -304,9 +304,10 @@ static int embed(const char *arguments) {
 }
 
 static char *read_text(const char *path) {
-    char *text;
+    char *text = NULL;
     size_t size;
-    assert_int_equal(lr_file_read(path, 1 << 24, &text, &size, NULL), LR_OK);
+    if (lr_file_read(path, 1 << 24, &text, &size, NULL) != LR_OK)
+        fail_msg("%s cannot be read", path);
     return text;
 }
 
