@@ -303,12 +303,10 @@ static int embed(const char *arguments) {
     return system(command);
 }
 
-static char *read_text(const char *path) {
-    char *text = NULL;
+static void read_text(const char *path, char **text) {
     size_t size;
-    if (lr_file_read(path, 1 << 24, &text, &size, NULL) != LR_OK)
+    if (lr_file_read(path, 1 << 24, text, &size, NULL) != LR_OK)
         fail_msg("%s cannot be read", path);
-    return text;
 }
 
 static void test_embed_shader(void **state) {
@@ -326,7 +324,9 @@ static void test_embed_shader(void **state) {
                  spirv_folder, i);
         assert_int_equal(embed(arguments), 0);
     }
-    char *first = read_text(spirv_path("0.h")), *second = read_text(spirv_path("1.h"));
+    char *first, *second, *said;
+    read_text(spirv_path("0.h"), &first);
+    read_text(spirv_path("1.h"), &second);
     assert_string_equal(first, second);
     char *at = strstr(first, "static const uint32_t good_spv[] = {");
     assert_non_null(at);
@@ -357,7 +357,7 @@ static void test_embed_shader(void **state) {
                      LR_OK);
     assert_int_not_equal(embed(arguments), 0);
     assert_int_not_equal(access(spirv_path("bad.h"), F_OK), 0);
-    char *said = read_text(spirv_path("said"));
+    read_text(spirv_path("said"), &said);
     assert_non_null(strstr(said, "bad.spv: in function shade: GLSL.std.450 Sqrt breaks the rule"));
     free(said);
     lr_spirv_free(&module);
