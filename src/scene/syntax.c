@@ -111,7 +111,7 @@ static bool explain_hex_comment(lr_report *report, line at) {
                (report->text[before - 1] == ' ' || report->text[before - 1] == '\t'))
             before--;
         char previous = hash != SIZE_MAX && before > at.start ? report->text[before - 1] : 0;
-        if (previous == ':' || previous == '[' || previous == ',') {
+        if (previous == ':' || previous == '[' || previous == ',' || previous == '-') {
             lr_report_add(report, hash,
                           "an unquoted # starts a comment, so the rest of this line is lost; "
                           "quote the colour: \"%.*s\"",
@@ -162,6 +162,26 @@ static bool explain_missing_space(lr_report *report, line at) {
     lr_report_add(report, i, "no space after the colon, expected \"%s: %s\"", word,
                   lr_shown(shown, report->text + i + 1, end - i - 1));
     return true;
+}
+
+/* A dash with nothing behind it, in a list that is not indented: libfyaml refuses it at the line
+ * after. */
+static bool explain_empty_item(lr_report *report, line at) {
+    while (line_before(report, &at)) {
+        size_t i = at.start;
+        while (i < at.end && isspace((unsigned char)report->text[i]))
+            i++;
+        if (i == at.end || report->text[i] == '#')
+            continue;
+        size_t dash = i++;
+        while (i < at.end && isspace((unsigned char)report->text[i]))
+            i++;
+        if (report->text[dash] != '-' || (i < at.end && report->text[i] != '#'))
+            return false;
+        lr_report_add(report, dash, "this item is empty, expected a value after the dash");
+        return true;
+    }
+    return false;
 }
 
 /* The innermost bracket that is open at the end, by a scan that knows quotes and comments. */
@@ -220,8 +240,10 @@ void lr_syntax_error(lr_report *report, int line_number, int column, const char 
     if (explain_tab(report, at) || explain_hex_comment(report, at) ||
         explain_missing_space(report, at) || (has_before && explain_missing_space(report, before)))
         return;
-    bool about_brackets = strstr(message, "flow") || strstr(message, "bracket") ||
-                          strstr(message, "expected node content");
+    bool about_nothing = strstr(message, "expected node content") != NULL;
+    if (about_nothing && explain_empty_item(report, at))
+        return;
+    bool about_brackets = strstr(message, "flow") || strstr(message, "bracket") || about_nothing;
     if (about_brackets && explain_open_bracket(report, report->length))
         return;
     for (size_t i = 0; i < sizeof rewordings / sizeof rewordings[0]; i++) {
