@@ -22,8 +22,9 @@ static const option options[] = {
     {.name = "self-test",
      .kind = OPTION_FLAG,
      .offset = offsetof(values, self_test),
-     .help = "render a few built-in scenes on each usable device and compare their\n"
-             "hashes with the known ones; exit code 1 when one differs",
+     .help = "render a few built-in scenes on each usable device and\n"
+             "compare their hashes with the known ones; exit code 1\n"
+             "when one differs",
      .also = "test"},
 };
 

@@ -212,6 +212,11 @@ static void occupy_standard_streams(void) {
 int main(int argc, char **argv) {
     occupy_standard_streams();
     signal(SIGPIPE, SIG_IGN);
+    if (!isatty(STDOUT_FILENO)) {
+        /* Large enough that nothing is written before the end, where the reason of a failure is
+         * known. */
+        setvbuf(stdout, NULL, _IOFBF, 1 << 18);
+    }
     int code = run(argc, argv);
     errno = 0;
     if (fflush(stdout) != 0 || ferror(stdout)) {

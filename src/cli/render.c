@@ -27,8 +27,8 @@ static const option options[] = {
      .kind = OPTION_TEXT,
      AT(output),
      .value = "FILE",
-     .help = "the picture, in the format of its ending: .ppm, .png or\n"
-             ".pfm (linear floats); \"-\" is PPM to standard output",
+     .help = "the picture, in the format of its ending: .ppm, .png\n"
+             "or .pfm (linear floats); \"-\" is PPM to standard output",
      .also = "out|file"},
     {.name = "size",
      .kind = OPTION_SIZE,

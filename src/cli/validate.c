@@ -49,10 +49,9 @@ const command command_validate = {
     .name = "validate",
     .operands = "SCENE...",
     .summary = "check scenes and print all their errors, rendering nothing",
-    .details =
-        "Reads each SCENE (\"-\" is standard input) and prints all that is wrong with it,\n"
-        "with line and column. Needs no Vulkan. Exit code 3 when a scene is invalid, 5 when\n"
-        "one cannot be read.",
+    .details = "Reads each SCENE (\"-\" is standard input) and prints all that is wrong with it,\n"
+               "with line and column. Needs no Vulkan. Exit code 3 when a scene is invalid, 5\n"
+               "when one cannot be read.",
     .examples = "  lavaray validate scenes/*.yaml\n"
                 "  lavaray validate -q - < scene.yaml",
     .options = options,
