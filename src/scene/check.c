@@ -4,6 +4,7 @@
 #include <math.h>
 
 bool lr_parallel(lr_vec3 a, lr_vec3 b) {
+    /* Written so that NaN counts as parallel. */
     lr_vec3 sine = lr_vec3_cross(lr_vec3_normalize(a), lr_vec3_normalize(b));
     return !(lr_vec3_length(sine) > 1e-6);
 }
@@ -111,6 +112,7 @@ static extent extent_of(const lr_object *object) {
     case LR_CONE: {
         lr_vec3 axis = lr_vec3_sub(object->cone.to, object->cone.from), u, v;
         lr_vec3_frame(lr_vec3_normalize(axis), &u, &v);
+        /* The wider end at both ends: only the order of magnitude matters. */
         double r = fmax(object->cone.radius_from, object->cone.radius_to);
         e = (extent){object->cone.from, {axis, lr_vec3_scale(u, r), lr_vec3_scale(v, r)}, 3};
         break;

@@ -17,6 +17,9 @@
         .kind = (kind_)                                                                            \
     }
 
+/* `doc` ends up in editors and in docs/scene.md: one sentence, in plain words. A field without a
+ * default needs LR_REQUIRED or LR_DERIVED; the order is that of the documentation. */
+
 /* ---- Camera, image, surroundings ----------------------------------------------------------- */
 
 static const lr_field camera_fields[] = {
@@ -219,6 +222,7 @@ const uint32_t lr_light_record_count = COUNT(lr_light_records);
 /* ---- Objects ------------------------------------------------------------------------------- */
 
 #define OBJECT(member) MEMBER(lr_object_draft, object.member)
+/* Read into the draft, applied as translate * rotate * scale. */
 #define TRANSFORM                                                                                  \
     {"scale",                                                                                      \
      LR_FIELD_SCALE,                                                                               \

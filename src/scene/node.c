@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Nodes and their text are never freed one by one, so they come from large chunks. */
 #define CHUNK_SIZE 65536
 
 struct lr_chunk {
@@ -128,8 +129,7 @@ static const lr_node *waiting_key(const builder *b) {
 /* Walks the pieces of a token's text, copying them to `out` unless it is NULL. Returns their total
  * length. fy_token_get_text() of libfyaml 0.7.12 leaks for quoted text of more than ten pieces
  * ('''''''''''''''''''''''' is one); its iterator does not. */
-static size_t walk_text(struct fy_token *token, char *out, bool *failed)
-{
+static size_t walk_text(struct fy_token *token, char *out, bool *failed) {
     struct fy_token_iter *iterator = fy_token_iter_create(token);
     if (!iterator) {
         *failed = true;
@@ -148,8 +148,7 @@ static size_t walk_text(struct fy_token *token, char *out, bool *failed)
     return length;
 }
 
-static const char *copy_text(builder *b, struct fy_token *token, size_t *length)
-{
+static const char *copy_text(builder *b, struct fy_token *token, size_t *length) {
     bool failed = false;
     *length = token ? walk_text(token, NULL, &failed) : 0;
     char *copy = failed ? NULL : tree_alloc(b->tree, *length + 1);
@@ -300,6 +299,8 @@ static void close_frame(builder *b) {
         out_of_memory(b);
         return;
     }
+    /* Children are complete and carry their own sizes, so an alias is counted without walking it
+     * again; a bomb is noticed at the first value that is too large. */
     uint64_t size = 1;
     if (node->kind == LR_NODE_LIST) {
         for (uint32_t i = 0; i < count; i++) {

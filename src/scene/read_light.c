@@ -19,10 +19,11 @@ static bool complete_spot(lr_reader *reader, const lr_record *record, const lr_g
                       "the spot has no \"to\" and no \"direction\", expected one of them");
         return false;
     }
+    /* A direction that is given is not zero; one that is computed may be. */
     if (to)
         light->direction = lr_vec3_sub(draft->to, light->position);
-    if (!(lr_vec3_length(light->direction) >= LR_LENGTH_MIN)) {
-        lr_report_add(reader->report, (to ? to : direction)->offset,
+    if (to && !(lr_vec3_length(light->direction) >= LR_LENGTH_MIN)) {
+        lr_report_add(reader->report, to->offset,
                       "the spot's \"to\" is its position, expected another point");
         return false;
     }

@@ -84,6 +84,8 @@ static void read_material(lr_reader *reader, const lr_node *node, const lr_node 
         if (material->color.kind == LR_PATTERN_NONE)
             material->color.colors[1] = material->color.colors[0];
     }
+    /* What is mirrored or let through is not scattered as well; with a coloured share, its greatest
+     * component counts, so that the default stays grey. */
     if (!lr_given_value(&given, record, "diffuse")) {
         double rest = fmax(0, 1 - greatest(material->reflect) - greatest(material->transmit));
         material->diffuse = (lr_color){rest, rest, rest};
@@ -147,6 +149,7 @@ void lr_read_materials(lr_reader *reader, const lr_node *node) {
             reader->report->no_memory = true;
             return;
         }
+        /* read_material() overwrites the whole struct. */
         char *name = material->name;
         empty = value->kind == LR_NODE_EMPTY ? key : NULL;
         if (empty) {

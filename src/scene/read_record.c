@@ -43,6 +43,7 @@ const lr_node *lr_given_value(const lr_given *given, const lr_record *record, co
     return given->values[lr_field_index(record, name)];
 }
 
+/* Types up to LR_FIELD_ROTATE are stored by the reader of values; the enum says so. */
 static bool is_stored(const lr_field *field) {
     return field->type <= LR_FIELD_ROTATE;
 }
@@ -109,6 +110,7 @@ bool lr_read_record(lr_reader *reader, const lr_node *node, const lr_node *at,
         lr_report_type(reader, node, record->name, expected);
         return given->valid = false;
     }
+    /* A mistyped key is reported as such, not as missing too. */
     bool meant[LR_FIELDS_MAX] = {false};
     for (uint32_t i = 0; i < node->count; i++) {
         const lr_node *key = lr_map_key(node, i), *value = lr_map_value(node, i);

@@ -171,6 +171,8 @@ bool lr_read_number(lr_reader *reader, const lr_node *node, const lr_field *fiel
     lr_field scalar = *field; /* a component of a vector or colour expects a number */
     if (scalar.type != LR_FIELD_INTEGER)
         scalar.type = LR_FIELD_NUMBER;
+    /* Every failure names the key, what stands there, and the range; the type's own message comes
+     * before that of the range. */
     double number;
     if (node->kind != LR_NODE_PLAIN || !parse_number(reader, node, &number)) {
         bool text = node->kind == LR_NODE_PLAIN || node->kind == LR_NODE_QUOTED;
@@ -211,6 +213,7 @@ static bool read_boolean(lr_reader *reader, const lr_node *node, const lr_field 
                 *value = i < 3;
                 return true;
             }
+    /* Booleans of YAML 1.1, which many files still have. */
     static const char *const old[] = {"yes", "no", "on", "off", "y", "n"};
     for (int i = 0; i < 6 && node->kind == LR_NODE_PLAIN; i++)
         if (strcasecmp(node->text, old[i]) == 0) {
@@ -321,6 +324,7 @@ static bool read_rotate(lr_reader *reader, const lr_node *node, const lr_field *
     lr_vec3 angles;
     if (!read_triple(reader, node, field, field->name, "xyz", &angles))
         return false;
+    /* About x first, so it stands rightmost in the product. */
     lr_transform x = lr_transform_rotate((lr_vec3){1, 0, 0}, angles.x);
     lr_transform y = lr_transform_rotate((lr_vec3){0, 1, 0}, angles.y);
     lr_transform z = lr_transform_rotate((lr_vec3){0, 0, 1}, angles.z);
@@ -343,6 +347,7 @@ bool lr_read_color(lr_reader *reader, const lr_node *node, const lr_field *field
         lr_report_type(reader, node, what, expected);
         return false;
     }
+    /* What begins like a number is meant as one and gets a number's messages. */
     const char *text = node->text;
     if (node->kind == LR_NODE_PLAIN && (strchr("+-.", text[0]) || isdigit((unsigned char)*text))) {
         double grey;

@@ -72,6 +72,7 @@ static int show_character(char out[8], const char *text, size_t length, size_t *
     unsigned char first = (unsigned char)text[*position];
     size_t size = lr_utf8_length(text + *position, length - *position);
     bool c1_control = size == 2 && first == 0xC2 && (unsigned char)text[*position + 1] < 0xA0;
+    /* Escape sequences in a scene must not reach a terminal. */
     if (size == 0 || first < 0x20 || first == 0x7F || c1_control) {
         snprintf(out, 8, "\\x%02X", first);
         *position += 1;
@@ -105,6 +106,7 @@ static bool is_continuation(char c) {
     return ((unsigned char)c & 0xC0) == 0x80;
 }
 
+/* By place; at one place by text, so that the order does not depend on qsort. */
 static int compare_problems(const void *a, const void *b) {
     const lr_problem *left = a, *right = b;
     if (left->offset != right->offset)

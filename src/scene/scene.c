@@ -122,6 +122,8 @@ void lr_read_scene(lr_reader *reader, const lr_node *root) {
     const lr_node *materials = lr_given_value(&given, record, "materials");
     const lr_node *lights = lr_given_value(&given, record, "lights");
     const lr_node *objects = lr_given_value(&given, record, "objects");
+    /* Materials before objects, which name them; otherwise the order is free, as the report sorts.
+     */
     lr_given ignored;
     read_all_cameras(reader, root, &given, draft.up);
     if (image)

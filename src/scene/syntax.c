@@ -19,6 +19,7 @@ static bool report_bad_byte(lr_report *report, size_t offset) {
     return false;
 }
 
+/* Sizes first: nothing below is worth its time for a text that is refused anyway. */
 bool lr_text_check(lr_report *report) {
     if (report->length > LR_TEXT_MAX) {
         lr_report_add(report, 0,
@@ -70,6 +71,7 @@ static bool line_before(const lr_report *report, line *at) {
     return true;
 }
 
+/* libfyaml gives places of errors as line and column; the report takes offsets. */
 static size_t offset_of(const lr_report *report, int line_number, int column) {
     size_t offset = 0;
     for (int i = 1; i < line_number && offset < report->length; offset++)
@@ -124,6 +126,7 @@ static bool explain_hex_comment(lr_report *report, line at) {
     return false;
 }
 
+/* A tab before the first other character; behind it, and in brackets, tabs are allowed. */
 static bool explain_tab(lr_report *report, line at) {
     for (size_t i = at.start; i < at.end; i++) {
         if (report->text[i] == '\t') {
@@ -229,6 +232,8 @@ static const struct {
     {"invalid value after mapping", "expected `key: value` here, with a space after the colon"},
     {"invalid multiline plain key",
      "expected `key: value` on one line, with a space after the colon"},
+    {"wrongly indented", "this does not line up with the lines above, expected their indentation"},
+    {"closing quote", "this text has no closing quote"},
     {"could not find expected", "expected `key: value` here, with a space after the colon"},
 };
 
@@ -237,6 +242,7 @@ void lr_syntax_error(lr_report *report, int line_number, int column, const char 
     line at = line_at(report, offset);
     line before = at;
     bool has_before = line_before(report, &before);
+    /* Slips that libfyaml reports in many ways, at or below the line that holds them. */
     if (explain_tab(report, at) || explain_hex_comment(report, at) ||
         explain_missing_space(report, at) || (has_before && explain_missing_space(report, before)))
         return;

@@ -228,6 +228,8 @@ static void test_traps(void **state) {
         {ONE "- sphere: {radius: 1\n- plane: {}\n", "3:11: this { is not closed, expected a }"},
         {ONE "- sphere: {center: [1, 2}\n", "3:20: this [ is not closed, expected a ]"},
         {"camera: {}: {}\nobjects: []\n", "1:1"},
+        {ONE "  - sphere: {}\n   - plane: {}\n", "4:4: this does not line up with the lines above"},
+        {SPHERE("material: {color: \"red}"), "this text has no closing quote"},
         {"a: b: c\n", "1:5: a second \": \" on this line"},
         {SPHERE("<<: {radius: 1}"), "3:12: merge keys (<<) are not part of YAML 1.2"},
         {ONE "- sphere: !ball {}\n", "3:11: tags (!name) are not part of the scene language"},
