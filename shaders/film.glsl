@@ -28,10 +28,10 @@ uvec2 film_fixed(float value)
     uint m = (bits & 0x007FFFFFu) | 0x00800000u;
     int left = e - 114;
     uint by = uint(left < 0 ? -left : left);
-    uint s = by & 31u;
-    uint spill = (m >> 1) >> ((31u - s) & 31u); // m >> (32 - s), right for s = 0 too
-    uvec2 up = by < 32u ? uvec2(m << s, spill) : uvec2(0u, m << s);
-    uvec2 down = uvec2(by < 32u ? m >> s : 0u, 0u);
+    uint shifted = m << (by & 31u);
+    uint spill = (m >> 1) >> ((31u - by) & 31u); // m >> (32 - by), right for by = 0 too
+    uvec2 up = by < 32u ? uvec2(shifted, spill) : uvec2(0u, shifted);
+    uvec2 down = uvec2(by < 32u ? m >> (by & 31u) : 0u, 0u);
     uvec2 fixed_point = left < 0 ? down : up;
     return left > 40 ? uvec2(0xFFFFFFFFu) : fixed_point;
 }
