@@ -215,7 +215,8 @@ int main(int argc, char **argv) {
     if (!isatty(STDOUT_FILENO)) {
         /* Large enough that nothing is written before the end, where the reason of a failure is
          * known. */
-        setvbuf(stdout, NULL, _IOFBF, 1 << 18);
+        static char buffer[1 << 18];
+        setvbuf(stdout, buffer, _IOFBF, sizeof buffer);
     }
     int code = run(argc, argv);
     errno = 0;
