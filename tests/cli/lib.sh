@@ -46,6 +46,11 @@ same() {
     cmp -s "$1" "$2" || problem "$1 and $2 differ"
 }
 
+# sha256_in FILE: the hash of the linear pixels in a render's statistics.
+sha256_in() {
+    python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["picture"]["sha256"])' "$1"
+}
+
 need_device() {
     "$LAVARAY" doctor >/dev/null 2>&1 || { echo "no usable Vulkan device" >&2; exit 77; }
 }
