@@ -1,5 +1,5 @@
 # SwiftShader makes the same pictures as the usual driver. Skipped without it, and when it cannot
-# compile the kernels within two minutes and 8 GB: then it is of no use for tests.
+# compile the kernels within a minute and 8 GB: then it is of no use for tests.
 . tests/cli/lib.sh
 [ -n "${LAVARAY_SWIFTSHADER_ICD:-}" ] || { echo 'LAVARAY_SWIFTSHADER_ICD is not set' >&2; exit 77; }
 need_device
@@ -10,7 +10,7 @@ on_second() (
     ulimit -v 8000000
     export VK_ICD_FILENAMES=$LAVARAY_SWIFTSHADER_ICD
     unset VK_DRIVER_FILES
-    timeout -s KILL 120 "$@"
+    timeout -s KILL 60 "$@"
 )
 
 expect 0 on_second "$LAVARAY" devices || finish
