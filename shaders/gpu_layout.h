@@ -163,9 +163,13 @@ struct gpu_object {
     uint material;
     uint flags;
     uint rank; /* as a medium, 1..65535: the highest of the nested media fills the space */
-    uint unused;
+    uint unused0;
+    uint shadow_red; /* -log2(transmit) in LR_SHADOW_UNIT */
+    uint shadow_green;
+    uint shadow_blue;
+    uint unused1;
 };
-LR_ROWS(gpu_object, 4)
+LR_ROWS(gpu_object, 5)
 
 /* Indexed by rank; rank 0 is the empty space around everything. */
 struct gpu_medium {
@@ -199,11 +203,11 @@ struct gpu_material {
     vec3 diffuse;
     float ior;
     vec3 specular;
-    uint shadow_red; /* -log2(transmit) in LR_SHADOW_UNIT */
+    uint unused0;
     vec3 reflect;
-    uint shadow_green;
+    uint unused1;
     vec3 transmit;
-    uint shadow_blue;
+    uint unused2;
 };
 LR_ROWS(gpu_material, 9)
 

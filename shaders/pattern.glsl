@@ -19,12 +19,11 @@ vec3 pattern_color(gpu_material m, uint object, vec3 position, vec3 normal)
     vec3 p = position, n = normal;
     uint kind = m.pattern & 7u;
     if ((m.pattern & LR_GPU_OBJECT_SPACE) != 0u) {
-        gpu_object space = load_object(object);
-        p = vec3(ex_dot(space.row0.xyz, position) + space.row0.w,
-                 ex_dot(space.row1.xyz, position) + space.row1.w,
-                 ex_dot(space.row2.xyz, position) + space.row2.w);
-        n = vec3(ex_dot(space.row0.xyz, normal), ex_dot(space.row1.xyz, normal),
-                 ex_dot(space.row2.xyz, normal));
+        vec4 row0, row1, row2;
+        load_object_space(object, row0, row1, row2);
+        p = vec3(ex_dot(row0.xyz, position) + row0.w, ex_dot(row1.xyz, position) + row1.w,
+                 ex_dot(row2.xyz, position) + row2.w);
+        n = vec3(ex_dot(row0.xyz, normal), ex_dot(row1.xyz, normal), ex_dot(row2.xyz, normal));
     }
     vec3 from_origin = p - m.pattern_origin;
     float along = ex_dot(from_origin, m.pattern_direction);

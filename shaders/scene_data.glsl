@@ -52,18 +52,24 @@ gpu_solid load_solid(uint base, uint index)
     return gpu_solid(a, b, c, d.x, d.y, d.z, d.w, e.x, e.y, e.z, e.w);
 }
 
-gpu_object load_object(uint index)
+// World to object space, in rows.
+void load_object_space(uint index, out vec4 row0, out vec4 row1, out vec4 row2)
 {
-    uint at = frame.objects + 4u * index;
-    uvec4 d = scene_row(at + 3u);
-    return gpu_object(scene_row_float(at), scene_row_float(at + 1u), scene_row_float(at + 2u), d.x,
-                      d.y, d.z, d.w);
+    uint at = frame.objects + 5u * index;
+    row0 = scene_row_float(at);
+    row1 = scene_row_float(at + 1u);
+    row2 = scene_row_float(at + 2u);
 }
 
-// Material and flags of an object: x material, y flags, z rank.
+// Material, flags and rank of an object.
 uvec3 load_object_ids(uint index)
 {
-    return scene_row(frame.objects + 4u * index + 3u).xyz;
+    return scene_row(frame.objects + 5u * index + 3u).xyz;
+}
+
+uvec3 load_object_shadow(uint index)
+{
+    return scene_row(frame.objects + 5u * index + 4u).xyz;
 }
 
 gpu_medium load_medium(uint rank)

@@ -116,16 +116,13 @@ void tint(inout uvec3 depth, vec2 crossing, float t_max, uint object)
 {
     bool first = crossing.x > 0.0 && crossing.x < t_max;
     bool second = crossing.y > 0.0 && crossing.y < t_max;
-    if (!first && !second)
-        return;
-    uvec3 ids = load_object_ids(object);
-    gpu_material m = load_material(ids.x);
     uint surfaces = (first ? 1u : 0u) + (second ? 1u : 0u);
-    uvec3 add = uvec3(m.shadow_red, m.shadow_green, m.shadow_blue) * surfaces;
-    if (has_absorption && (ids.y & LR_FLAG_SOLID) != 0u) {
+    uvec3 add = load_object_shadow(object) * surfaces;
+    if (has_absorption && surfaces != 0u) {
+        uvec3 ids = load_object_ids(object);
         float inside = max(min(crossing.y, t_max) - max(crossing.x, 0.0), 0.0);
         vec3 optical = min(load_medium(ids.z).absorption * inside, vec3(40.0));
-        add += uvec3(optical * LR_SHADOW_UNIT);
+        add += (ids.y & LR_FLAG_SOLID) != 0u ? uvec3(optical * LR_SHADOW_UNIT) : uvec3(0u);
     }
     depth = min(depth + add, uvec3(LR_SHADOW_OPAQUE));
 }

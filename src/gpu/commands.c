@@ -91,7 +91,13 @@ lr_status lr_commands_finish(lr_device *device, lr_error *error)
         .pCommandBuffers = &device->commands,
     };
     LR_VK(vk, vkQueueSubmit, device->queue, 1, &submit, device->fence);
-    LR_VK(vk, vkWaitForFences, device->handle, 1, &device->fence, VK_TRUE, TIMEOUT_NANOSECONDS);
+    VkResult waited =
+        vk->vkWaitForFences(device->handle, 1, &device->fence, VK_TRUE, TIMEOUT_NANOSECONDS);
+    if (waited != VK_SUCCESS) {
+        /* The work may still run: nothing that it uses may be freed before it has ended. */
+        vk->vkDeviceWaitIdle(device->handle);
+        return lr_vk_fail(error, "vkWaitForFences", waited);
+    }
     LR_VK(vk, vkResetFences, device->handle, 1, &device->fence);
 fail:
     return status;

@@ -96,16 +96,14 @@ lr_status lr_program_create(lr_device *device, const lr_layout *layout,
 {
     lr_vk *vk = &device->vk;
     VkShaderModule module = VK_NULL_HANDLE;
-    lr_spirv code = {0};
-    lr_status status =
-        lr_spirv_add_modes(desc->words, desc->word_count, &device->modes, &code, error);
+    lr_spirv special = {0}, code = {0};
+    lr_status status = lr_spirv_specialize(desc->words, desc->word_count, desc->constants,
+                                           desc->constant_count, &special, error);
+    if (!status)
+        status = lr_spirv_add_modes(special.words, special.count, &device->modes, &code, error);
+    lr_spirv_free(&special);
     if (status)
         return status;
-    VkSpecializationMapEntry entries[64];
-    for (uint32_t i = 0; i < desc->constant_count; i++)
-        entries[i] = (VkSpecializationMapEntry){i, 4 * i, 4};
-    VkSpecializationInfo constants = {desc->constant_count, entries, 4 * desc->constant_count,
-                                      desc->constants};
     VkShaderModuleCreateInfo module_desc = {
         .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
         .codeSize = 4 * code.count,
@@ -117,8 +115,7 @@ lr_status lr_program_create(lr_device *device, const lr_layout *layout,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                   .module = module,
-                  .pName = "main",
-                  .pSpecializationInfo = &constants},
+                  .pName = "main"},
         .layout = layout->pipeline,
     };
     LR_VK(vk, vkCreateComputePipelines, device->handle, VK_NULL_HANDLE, 1, &pipeline, NULL,

@@ -32,7 +32,7 @@ lr_status lr_set_create(lr_device *device, const lr_layout *layout,
                         const lr_buffer *const *buffers, VkDescriptorSet *set, lr_error *error);
 
 typedef struct lr_program_desc {
-    const uint32_t *words; /* decorated SPIR-V; the device's float modes are added here */
+    const uint32_t *words; /* decorated SPIR-V; specialised here, and the device's float modes added */
     size_t word_count;
     const uint32_t *constants; /* specialisation constant i has the value constants[i] */
     uint32_t constant_count;

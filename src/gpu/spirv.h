@@ -18,6 +18,11 @@ void lr_spirv_free(lr_spirv *module);
  * box tests, which may use any arithmetic). LR_ERROR_ARGUMENT when words is no valid module. */
 lr_status lr_spirv_decorate(const uint32_t *words, size_t count, lr_spirv *out, lr_error *error);
 
+/* Copies a module that this project built into *out with its boolean specialisation constants fixed
+ * (the one with SpecId i to constants[i] != 0) and without the branches that they rule out. */
+lr_status lr_spirv_specialize(const uint32_t *words, size_t count, const uint32_t *constants,
+                              uint32_t constant_count, lr_spirv *out, lr_error *error);
+
 typedef struct lr_spirv_modes {
     bool rounding_rte;         /* RoundingModeRTE 32 */
     bool signed_zero_inf_nan;  /* SignedZeroInfNanPreserve 32 */

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/exact.h"
 #include "base/memory.h"
 
 #define LOG2_E 1.4426950408889634
@@ -34,15 +33,6 @@ uint32_t lr_pack_rows(lr_packed_scene *packed, const void *record, uint32_t rows
 static lr_color multiply(lr_color a, lr_color b)
 {
     return (lr_color){a.x * b.x, a.y * b.y, a.z * b.z};
-}
-
-/* A transmitted share as optical depth in shadows. */
-static uint32_t shadow_depth(double transmit)
-{
-    if (transmit <= 0)
-        return LR_SHADOW_OPAQUE;
-    double depth = -lr_log2(transmit) * LR_SHADOW_UNIT;
-    return depth < LR_SHADOW_OPAQUE ? (uint32_t)floor(depth + 0.5) : LR_SHADOW_OPAQUE;
 }
 
 static uint32_t pack_pattern_kind(const lr_pattern *pattern)
@@ -83,9 +73,6 @@ static void pack_material(const lr_scene *scene, const lr_material *m, struct gp
         .specular = lr_pack_vec3(m->specular),
         .reflect = lr_pack_vec3(m->reflect),
         .transmit = lr_pack_vec3(m->transmit),
-        .shadow_red = shadow_depth(m->transmit.x),
-        .shadow_green = shadow_depth(m->transmit.y),
-        .shadow_blue = shadow_depth(m->transmit.z),
     };
 }
 

@@ -1,6 +1,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/exact.h"
 #include "base/memory.h"
 #include "render/pack.h"
 
@@ -344,11 +345,21 @@ static lr_status pack_media(const lr_scene *scene, const lr_settings *settings,
     return fits ? LR_OK : lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's media");
 }
 
+/* A transmitted share as optical depth in shadows. */
+static uint32_t shadow_depth(double transmit)
+{
+    if (transmit <= 0)
+        return LR_SHADOW_OPAQUE;
+    double depth = -lr_log2(transmit) * LR_SHADOW_UNIT;
+    return depth < LR_SHADOW_OPAQUE ? (uint32_t)floor(depth + 0.5) : LR_SHADOW_OPAQUE;
+}
+
 static bool pack_object_record(const lr_scene *scene, uint32_t index, uint32_t flags,
                                uint32_t rank, lr_packed_scene *packed)
 {
     const lr_object *object = &scene->objects[index];
     lr_transform inverse = inverse_of(&object->to_world);
+    lr_color transmit = material_of(scene, index)->transmit;
     struct gpu_object record = {
         .row0 = pack_row(inverse.m[0], 1),
         .row1 = pack_row(inverse.m[1], 1),
@@ -356,6 +367,9 @@ static bool pack_object_record(const lr_scene *scene, uint32_t index, uint32_t f
         .material = object->material,
         .flags = flags,
         .rank = rank,
+        .shadow_red = shadow_depth(transmit.x),
+        .shadow_green = shadow_depth(transmit.y),
+        .shadow_blue = shadow_depth(transmit.z),
     };
     return lr_pack_rows(packed, &record, sizeof record / 16) != UINT32_MAX;
 }

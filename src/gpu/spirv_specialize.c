@@ -1,0 +1,327 @@
+/* Specialisation on the host. Drivers are allowed to fold specialisation constants, but one that
+ * does not compiles every branch of every kernel: SwiftShader took minutes and gigabytes for what
+ * takes it a second once the branches that a scene does not need are gone (docs/drivers.md). */
+#include "gpu/spirv_internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+enum {
+    OP_NAME = 5,
+    OP_MEMBER_NAME = 6,
+    OP_CONSTANT_TRUE = 41,
+    OP_CONSTANT_FALSE = 42,
+    OP_SPEC_CONSTANT_TRUE = 48,
+    OP_SPEC_CONSTANT_FALSE = 49,
+    OP_FUNCTION = 54,
+    OP_FUNCTION_END = 56,
+    OP_DECORATE = 71,
+    OP_MEMBER_DECORATE = 72,
+    OP_LOGICAL_OR = 166,
+    OP_LOGICAL_AND = 167,
+    OP_LOGICAL_NOT = 168,
+    OP_PHI = 245,
+    OP_LOOP_MERGE = 246,
+    OP_SELECTION_MERGE = 247,
+    OP_LABEL = 248,
+    OP_BRANCH = 249,
+    OP_BRANCH_CONDITIONAL = 250,
+    OP_SWITCH = 251,
+    DECORATION_SPEC_ID = 1,
+};
+
+typedef enum truth { UNKNOWN, FALSE, TRUE } truth;
+
+typedef struct folding {
+    const uint32_t *words;
+    size_t count;
+    uint32_t bound;
+    uint32_t *spec_ids;   /* by id: 1 + its SpecId, 0 for none */
+    unsigned char *truths; /* by id: what is known of a bool */
+    bool *reachable;      /* by label */
+    uint32_t *ends;       /* by label: where its terminator stands */
+    bool *removed;        /* by id: defined in a block that is gone */
+    const uint32_t *constants;
+    uint32_t constant_count;
+} folding;
+
+static const uint32_t *at(const folding *f, size_t word)
+{
+    return &f->words[word];
+}
+
+/* The branch that a block's terminator takes for certain: a label, or 0 when it is not known. */
+static uint32_t taken_branch(const folding *f, size_t terminator)
+{
+    const uint32_t *w = at(f, terminator);
+    if (spirv_opcode(w[0]) != OP_BRANCH_CONDITIONAL || f->truths[w[1]] == UNKNOWN)
+        return 0;
+    return f->truths[w[1]] == TRUE ? w[2] : w[3];
+}
+
+static bool branches_to(const folding *f, uint32_t from, uint32_t to)
+{
+    if (!f->reachable[from] || !f->ends[from])
+        return false;
+    const uint32_t *w = at(f, f->ends[from]);
+    uint32_t taken = taken_branch(f, f->ends[from]);
+    if (taken)
+        return taken == to;
+    switch (spirv_opcode(w[0])) {
+    case OP_BRANCH:
+        return w[1] == to;
+    case OP_BRANCH_CONDITIONAL:
+        return w[2] == to || w[3] == to;
+    default:
+        return true;
+    }
+}
+
+static truth fold_phi(const folding *f, const uint32_t *w, uint32_t label)
+{
+    truth result = UNKNOWN;
+    for (uint32_t i = 3; i + 1 < spirv_length(w[0]); i += 2) {
+        if (!branches_to(f, w[i + 1], label))
+            continue;
+        truth incoming = f->truths[w[i]];
+        if (incoming == UNKNOWN || (result != UNKNOWN && result != incoming))
+            return UNKNOWN;
+        result = incoming;
+    }
+    return result;
+}
+
+static truth fold(const folding *f, const uint32_t *w, uint32_t label)
+{
+    truth a, b;
+    switch (spirv_opcode(w[0])) {
+    case OP_CONSTANT_TRUE:
+        return TRUE;
+    case OP_CONSTANT_FALSE:
+        return FALSE;
+    case OP_SPEC_CONSTANT_TRUE:
+    case OP_SPEC_CONSTANT_FALSE: {
+        uint32_t spec = f->spec_ids[w[2]];
+        bool value = spirv_opcode(w[0]) == OP_SPEC_CONSTANT_TRUE;
+        if (spec && spec - 1 < f->constant_count)
+            value = f->constants[spec - 1] != 0;
+        return value ? TRUE : FALSE;
+    }
+    case OP_LOGICAL_NOT:
+        a = f->truths[w[3]];
+        return a == UNKNOWN ? UNKNOWN : (a == TRUE ? FALSE : TRUE);
+    case OP_LOGICAL_AND:
+        a = f->truths[w[3]], b = f->truths[w[4]];
+        return a == FALSE || b == FALSE ? FALSE : (a == TRUE && b == TRUE ? TRUE : UNKNOWN);
+    case OP_LOGICAL_OR:
+        a = f->truths[w[3]], b = f->truths[w[4]];
+        return a == TRUE || b == TRUE ? TRUE : (a == FALSE && b == FALSE ? FALSE : UNKNOWN);
+    case OP_PHI:
+        return fold_phi(f, w, label);
+    default:
+        return UNKNOWN;
+    }
+}
+
+/* Blocks stand behind those that dominate them, so one pass in order finds all that matters. */
+static void find_reachable(folding *f)
+{
+    uint32_t label = 0;
+    bool entry = false;
+    SPIRV_EACH(word, f->words, f->count) {
+        const uint32_t *w = at(f, word);
+        switch (spirv_opcode(w[0])) {
+        case OP_DECORATE:
+            if (w[2] == DECORATION_SPEC_ID)
+                f->spec_ids[w[1]] = w[3] + 1;
+            break;
+        case OP_FUNCTION:
+            entry = true;
+            break;
+        case OP_LABEL:
+            label = w[1];
+            f->reachable[label] |= entry;
+            entry = false;
+            break;
+        case OP_LOGICAL_OR:
+        case OP_LOGICAL_AND:
+        case OP_LOGICAL_NOT:
+        case OP_PHI:
+        case OP_CONSTANT_TRUE:
+        case OP_CONSTANT_FALSE:
+        case OP_SPEC_CONSTANT_TRUE:
+        case OP_SPEC_CONSTANT_FALSE:
+            f->truths[w[2]] = fold(f, w, label);
+            break;
+        case OP_LOOP_MERGE:
+            f->reachable[w[1]] |= f->reachable[label];
+            f->reachable[w[2]] |= f->reachable[label];
+            break;
+        case OP_SELECTION_MERGE: {
+            /* With a known branch the construct dissolves, and its merge block must earn its place
+             * by a branch that reaches it. */
+            bool dissolves = taken_branch(f, word + spirv_length(w[0])) != 0;
+            f->reachable[w[1]] |= f->reachable[label] && !dissolves;
+            break;
+        }
+        case OP_BRANCH:
+            f->ends[label] = (uint32_t)word;
+            f->reachable[w[1]] |= f->reachable[label];
+            break;
+        case OP_BRANCH_CONDITIONAL: {
+            f->ends[label] = (uint32_t)word;
+            uint32_t taken = taken_branch(f, word);
+            f->reachable[w[2]] |= f->reachable[label] && (!taken || taken == w[2]);
+            f->reachable[w[3]] |= f->reachable[label] && (!taken || taken == w[3]);
+            break;
+        }
+        case OP_SWITCH:
+            f->ends[label] = (uint32_t)word;
+            for (uint32_t i = 2; i < spirv_length(w[0]); i += 2)
+                f->reachable[w[i]] |= f->reachable[label];
+            break;
+        default:
+            break;
+        }
+    }
+}
+
+/* Emits one instruction of a reachable block, folded. Returns the words written. */
+static size_t emit(const folding *f, size_t word, uint32_t label, uint32_t *out)
+{
+    const uint32_t *w = at(f, word);
+    uint32_t length = spirv_length(w[0]), opcode = spirv_opcode(w[0]), taken;
+    switch (opcode) {
+    case OP_SELECTION_MERGE:
+        if (taken_branch(f, word + length))
+            return 0;
+        break;
+    case OP_BRANCH_CONDITIONAL:
+        taken = taken_branch(f, word);
+        if (!taken)
+            break;
+        out[0] = 2u << 16 | OP_BRANCH;
+        out[1] = taken;
+        return 2;
+    case OP_PHI: {
+        size_t written = 3;
+        memcpy(out, w, 3 * sizeof *out);
+        for (uint32_t i = 3; i + 1 < length; i += 2) {
+            if (!branches_to(f, w[i + 1], label))
+                continue;
+            out[written++] = w[i];
+            out[written++] = w[i + 1];
+        }
+        out[0] = (uint32_t)written << 16 | OP_PHI;
+        return written;
+    }
+    case OP_SPEC_CONSTANT_TRUE:
+    case OP_SPEC_CONSTANT_FALSE:
+        out[0] = 3u << 16 | (f->truths[w[2]] == TRUE ? OP_CONSTANT_TRUE : OP_CONSTANT_FALSE);
+        out[1] = w[1];
+        out[2] = w[2];
+        return 3;
+    default:
+        break;
+    }
+    memcpy(out, w, length * sizeof *out);
+    return length;
+}
+
+/* Ids that only removed blocks define; names and decorations of them must go too. Every result that
+ * has a type stands in word 2, and what has none (labels) in word 1; a few instructions without a
+ * result are mistaken for ones with, which does no harm: their operands are defined elsewhere. */
+static void find_removed(folding *f)
+{
+    bool inside = false, gone = false;
+    SPIRV_EACH(word, f->words, f->count) {
+        const uint32_t *w = at(f, word);
+        uint32_t opcode = spirv_opcode(w[0]), length = spirv_length(w[0]);
+        if (opcode == OP_LABEL)
+            inside = true, gone = !f->reachable[w[1]];
+        if (opcode == OP_FUNCTION_END)
+            inside = false;
+        if (!inside || !gone)
+            continue;
+        if (opcode == OP_LABEL)
+            f->removed[w[1]] = true;
+        else if (length > 2 && w[2] < f->bound)
+            f->removed[w[2]] = true;
+    }
+    inside = gone = false;
+    SPIRV_EACH(word, f->words, f->count) {
+        const uint32_t *w = at(f, word);
+        uint32_t opcode = spirv_opcode(w[0]), length = spirv_length(w[0]);
+        if (opcode == OP_LABEL)
+            inside = true, gone = !f->reachable[w[1]];
+        if (opcode == OP_NAME || opcode == OP_MEMBER_NAME || opcode == OP_DECORATE ||
+            opcode == OP_MEMBER_DECORATE || (inside && gone))
+            continue;
+        if (length > 1 && w[1] < f->bound)
+            f->removed[w[1]] = false;
+        if (length > 2 && w[2] < f->bound)
+            f->removed[w[2]] = false;
+    }
+}
+
+lr_status lr_spirv_specialize(const uint32_t *words, size_t count, const uint32_t *constants,
+                              uint32_t constant_count, lr_spirv *out, lr_error *error)
+{
+    *out = (lr_spirv){0};
+    spirv_index index;
+    lr_status status = spirv_index_create(&index, words, count, error);
+    uint32_t bound = index.bound;
+    spirv_index_free(&index);
+    if (status)
+        return status;
+    folding f = {
+        .words = words,
+        .count = count,
+        .bound = bound,
+        .spec_ids = lr_alloc(bound, sizeof *f.spec_ids),
+        .truths = lr_alloc(bound, sizeof *f.truths),
+        .reachable = lr_alloc(bound, sizeof *f.reachable),
+        .ends = lr_alloc(bound, sizeof *f.ends),
+        .removed = lr_alloc(bound, sizeof *f.removed),
+        .constants = constants,
+        .constant_count = constant_count,
+    };
+    out->words = lr_alloc(count, sizeof *out->words);
+    if (!f.spec_ids || !f.truths || !f.reachable || !f.ends || !f.removed || !out->words) {
+        status = lr_fail(error, LR_ERROR_MEMORY, "out of memory for a SPIR-V module");
+        goto done;
+    }
+    find_reachable(&f);
+    find_removed(&f);
+    memcpy(out->words, words, SPIRV_HEADER_WORDS * sizeof *words);
+    out->count = SPIRV_HEADER_WORDS;
+    bool inside = false;
+    uint32_t label = 0;
+    SPIRV_EACH(word, words, count) {
+        uint32_t opcode = spirv_opcode(words[word]);
+        if (opcode == OP_LABEL)
+            inside = true, label = words[word + 1];
+        if (opcode == OP_FUNCTION_END)
+            inside = false;
+        if (inside && !f.reachable[label])
+            continue;
+        bool annotates = opcode == OP_NAME || opcode == OP_MEMBER_NAME || opcode == OP_DECORATE ||
+                         opcode == OP_MEMBER_DECORATE;
+        if (annotates && f.removed[words[word + 1]])
+            continue;
+        if (opcode == OP_DECORATE && words[word + 2] == DECORATION_SPEC_ID)
+            continue;
+        out->count += emit(&f, word, label, out->words + out->count);
+    }
+done:
+    free(f.spec_ids);
+    free(f.truths);
+    free(f.reachable);
+    free(f.ends);
+    free(f.removed);
+    if (status)
+        lr_spirv_free(out);
+    return status;
+}
