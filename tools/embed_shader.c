@@ -13,7 +13,8 @@
 
 enum { SIZE_LIMIT = 1 << 28 };
 
-static bool read_words(const char *path, lr_spirv *module) {
+static bool read_words(const char *path, lr_spirv *module)
+{
     FILE *file = fopen(path, "rb");
     if (!file) {
         fprintf(stderr, "%s: %s\n", path, strerror(errno));
@@ -42,7 +43,8 @@ static bool read_words(const char *path, lr_spirv *module) {
     return complete;
 }
 
-static bool write_header(const char *path, const char *symbol, const lr_spirv *module) {
+static bool write_header(const char *path, const char *symbol, const lr_spirv *module)
+{
     FILE *file = fopen(path, "w");
     if (!file) {
         fprintf(stderr, "%s: %s\n", path, strerror(errno));
@@ -61,7 +63,8 @@ static bool write_header(const char *path, const char *symbol, const lr_spirv *m
     return written;
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char **argv)
+{
     bool check_only = argc == 3 && strcmp(argv[1], "--check") == 0;
     if (!check_only && argc != 4) {
         fprintf(stderr,

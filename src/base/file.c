@@ -19,18 +19,21 @@ enum {
 /* Of a path in a message, so that a long one leaves room for the reason. */
 #define SHOWN "%.500s"
 
-static const char *shown(const char *path, const char *standard_stream) {
+static const char *shown(const char *path, const char *standard_stream)
+{
     return strcmp(path, "-") == 0 ? standard_stream : path;
 }
 
 /* ---- Reading ------------------------------------------------------------------------------ */
 
-static lr_status too_large(const char *name, size_t limit, lr_error *error) {
+static lr_status too_large(const char *name, size_t limit, lr_error *error)
+{
     return lr_fail(error, LR_ERROR_FILE, SHOWN ": larger than the limit of %zu bytes", name, limit);
 }
 
 static lr_status read_all(int fd, const char *name, size_t limit, size_t expected, char **bytes,
-                          size_t *size, lr_error *error) {
+                          size_t *size, lr_error *error)
+{
     size_t used = 0, capacity = expected < 65536 ? 65536 : expected;
     char *buffer = malloc(capacity + 1);
     while (buffer) {
@@ -68,8 +71,8 @@ static lr_status read_all(int fd, const char *name, size_t limit, size_t expecte
     return lr_fail(error, LR_ERROR_MEMORY, SHOWN ": out of memory after %zu bytes", name, used);
 }
 
-lr_status lr_file_read(const char *path, size_t limit, char **bytes, size_t *size,
-                       lr_error *error) {
+lr_status lr_file_read(const char *path, size_t limit, char **bytes, size_t *size, lr_error *error)
+{
     *bytes = NULL;
     *size = 0;
     bool is_standard = strcmp(path, "-") == 0;
@@ -99,7 +102,8 @@ lr_status lr_file_read(const char *path, size_t limit, char **bytes, size_t *siz
 
 /* ---- Writing ------------------------------------------------------------------------------ */
 
-static lr_status write_failure(const char *name, int reason, lr_error *error) {
+static lr_status write_failure(const char *name, int reason, lr_error *error)
+{
     const char *remedy = "";
     if (reason == EPIPE)
         remedy = ": the program that reads it has ended";
@@ -111,7 +115,8 @@ static lr_status write_failure(const char *name, int reason, lr_error *error) {
 }
 
 /* 0 or the errno of the failure. */
-static int write_all(int fd, const char *bytes, size_t size) {
+static int write_all(int fd, const char *bytes, size_t size)
+{
     while (size > 0) {
         ssize_t done = write(fd, bytes, size < TRANSFER_LIMIT ? size : TRANSFER_LIMIT);
         if (done < 0 && errno == EINTR)
@@ -129,7 +134,8 @@ static int write_all(int fd, const char *bytes, size_t size) {
 /* The file descriptor that a path such as /dev/stdout or /dev/fd/3 stands for, -1 for other paths.
  * Such a path is written through the descriptor: opening it would truncate or overwrite a file that
  * the shell opened for appending. */
-static int descriptor_of(const char *path) {
+static int descriptor_of(const char *path)
+{
     static const char *const folders[] = {"/dev/fd/", "/proc/self/fd/"};
     if (strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0)
         return STDOUT_FILENO;
@@ -148,14 +154,16 @@ static int descriptor_of(const char *path) {
 }
 
 /* The length of a path up to and with its last slash. */
-static size_t folder_length(const char *path) {
+static size_t folder_length(const char *path)
+{
     const char *slash = strrchr(path, '/');
     return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
 /* Follows symbolic links in the last component, also where the last one's target does not exist
  * yet. False with errno set when they cannot be followed. */
-static bool follow_links(char path[PATH_MAX]) {
+static bool follow_links(char path[PATH_MAX])
+{
     for (int i = 0; i < LINKS_LIMIT; i++) {
         struct stat info;
         if (descriptor_of(path) >= 0 || lstat(path, &info) != 0 || !S_ISLNK(info.st_mode))
@@ -176,7 +184,8 @@ static bool follow_links(char path[PATH_MAX]) {
     return false;
 }
 
-static lr_status create_failure(const char *path, const char *target, int reason, lr_error *error) {
+static lr_status create_failure(const char *path, const char *target, int reason, lr_error *error)
+{
     size_t length = folder_length(target);
     char folder[256];
     snprintf(folder, sizeof folder, "%.*s", length ? (int)length : 1, length ? target : ".");
@@ -200,7 +209,8 @@ static lr_status create_failure(const char *path, const char *target, int reason
 }
 
 /* Opens a new file beside the target; the kernel applies the umask to it. */
-static int create_temporary(const char *target, char temporary[PATH_MAX]) {
+static int create_temporary(const char *target, char temporary[PATH_MAX])
+{
     int folder = (int)folder_length(target);
     for (int i = 0; i < TEMPORARY_NAMES; i++) {
         int length = snprintf(temporary, PATH_MAX, "%.*s.lavaray-%ld-%d.tmp", folder, target,
@@ -217,7 +227,8 @@ static int create_temporary(const char *target, char temporary[PATH_MAX]) {
 }
 
 /* Gives the new file the old one's owner, where that is allowed, and its permissions. */
-static int copy_permissions(int fd, const struct stat *old) {
+static int copy_permissions(int fd, const struct stat *old)
+{
     mode_t mode = old->st_mode & 07777;
     if (fchown(fd, old->st_uid, old->st_gid) != 0)
         mode &= 0777; /* set-id bits would now speak of another owner */
@@ -226,7 +237,8 @@ static int copy_permissions(int fd, const struct stat *old) {
 
 /* Makes the rename itself durable; a file system that cannot do that keeps the file all the same.
  */
-static void flush_folder(const char *target) {
+static void flush_folder(const char *target)
+{
     char folder[PATH_MAX];
     size_t length = folder_length(target);
     snprintf(folder, sizeof folder, "%.*s", length ? (int)length : 1, length ? target : ".");
@@ -238,7 +250,8 @@ static void flush_folder(const char *target) {
 }
 
 static lr_status replace(const char *path, const char *target, const struct stat *old,
-                         const void *bytes, size_t size, lr_error *error) {
+                         const void *bytes, size_t size, lr_error *error)
+{
     char temporary[PATH_MAX];
     if (old && access(target, W_OK) != 0)
         return write_failure(path, errno, error);
@@ -263,7 +276,8 @@ static lr_status replace(const char *path, const char *target, const struct stat
 }
 
 static lr_status write_directly(const char *path, const char *target, const void *bytes,
-                                size_t size, lr_error *error) {
+                                size_t size, lr_error *error)
+{
     int fd = open(target, O_WRONLY | O_CLOEXEC | O_NOCTTY);
     if (fd < 0)
         return write_failure(path, errno, error);
@@ -273,7 +287,8 @@ static lr_status write_directly(const char *path, const char *target, const void
     return reason == 0 ? LR_OK : write_failure(path, reason, error);
 }
 
-lr_status lr_file_write(const char *path, const void *bytes, size_t size, lr_error *error) {
+lr_status lr_file_write(const char *path, const void *bytes, size_t size, lr_error *error)
+{
     char target[PATH_MAX];
     if (path[0] == 0)
         return lr_fail(error, LR_ERROR_FILE, "the name of the output file is empty");

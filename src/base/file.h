@@ -7,8 +7,7 @@
 /* Reads all of path ("-": standard input) into *bytes, NUL-terminated behind *size bytes; the
  * caller frees it. A file of more than `limit` bytes, a directory, an unreadable file:
  * LR_ERROR_FILE with the path and the reason. */
-lr_status lr_file_read(const char *path, size_t limit, char **bytes, size_t *size,
-                       lr_error *error);
+lr_status lr_file_read(const char *path, size_t limit, char **bytes, size_t *size, lr_error *error);
 
 /* Writes size bytes to path ("-": standard output). A regular file is written beside its place
  * under a temporary name, flushed to disk and renamed, so the old file stays whole until the new

@@ -137,8 +137,7 @@ lr_transform lr_transform_multiply(lr_transform a, lr_transform b)
     for (int row = 0; row < 3; row++)
         for (int column = 0; column < 4; column++)
             product.m[row][column] = a.m[row][0] * b.m[0][column] + a.m[row][1] * b.m[1][column] +
-                                     a.m[row][2] * b.m[2][column] +
-                                     (column == 3 ? a.m[row][3] : 0);
+                                     a.m[row][2] * b.m[2][column] + (column == 3 ? a.m[row][3] : 0);
     return product;
 }
 

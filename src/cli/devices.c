@@ -28,12 +28,14 @@ static const option options[] = {
      .also = "test"},
 };
 
-static lr_status open_device(const char *select, lr_device **device, lr_error *error) {
+static lr_status open_device(const char *select, lr_device **device, lr_error *error)
+{
     lr_device_desc desc = {.select = select, .validation = validation_wanted()};
     return lr_device_open(&desc, device, error);
 }
 
-static void try_device(device_entry *entry, uint32_t index) {
+static void try_device(device_entry *entry, uint32_t index)
+{
     if (!entry->info.usable) {
         snprintf(entry->trouble, sizeof entry->trouble, "%s", entry->info.missing);
         return;
@@ -52,7 +54,8 @@ static void try_device(device_entry *entry, uint32_t index) {
 }
 
 /* Two devices of one kind cannot be told apart here; the first of them is marked. */
-static void mark_automatic(device_entry *entries, uint32_t count) {
+static void mark_automatic(device_entry *entries, uint32_t count)
+{
     lr_device *device = NULL;
     if (open_device("auto", &device, NULL) != LR_OK) {
         return;
@@ -68,7 +71,8 @@ static void mark_automatic(device_entry *entries, uint32_t count) {
     lr_device_close(device);
 }
 
-lr_status survey_devices(device_entry **entries, uint32_t *count, lr_error *error) {
+lr_status survey_devices(device_entry **entries, uint32_t *count, lr_error *error)
+{
     lr_device_info *infos = NULL;
     *entries = NULL;
     *count = 0;
@@ -91,14 +95,16 @@ lr_status survey_devices(device_entry **entries, uint32_t *count, lr_error *erro
     return LR_OK;
 }
 
-const char *describe_usability(const device_entry *entry) {
+const char *describe_usability(const device_entry *entry)
+{
     if (!entry->opened) {
         return entry->trouble;
     }
     return entry->exact ? "usable, exact" : "usable, but fails the arithmetic self-test: not exact";
 }
 
-static void print_list(const device_entry *entries, uint32_t count) {
+static void print_list(const device_entry *entries, uint32_t count)
+{
     for (uint32_t i = 0; i < count; i++) {
         const device_entry *e = &entries[i];
         printf("%u  %s  %s  Vulkan %s  %s  %s%s%s\n", (unsigned)i, e->info.name, e->info.driver,
@@ -108,7 +114,8 @@ static void print_list(const device_entry *entries, uint32_t count) {
     }
 }
 
-static bool print_json(const device_entry *entries, uint32_t count) {
+static bool print_json(const device_entry *entries, uint32_t count)
+{
     json_t *list = json_array();
     for (uint32_t i = 0; i < count; i++) {
         const device_entry *e = &entries[i];
@@ -130,7 +137,8 @@ static bool print_json(const device_entry *entries, uint32_t count) {
     return true;
 }
 
-static int run(const command *self, int argc, char **argv) {
+static int run(const command *self, int argc, char **argv)
+{
     values v = {0};
     int operands;
     parse_result parsed = options_parse(self, argc, argv, &v, &operands);

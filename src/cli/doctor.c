@@ -18,7 +18,8 @@ typedef struct findings {
 
 static void say(const char *mark, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-static void say(const char *mark, const char *format, ...) {
+static void say(const char *mark, const char *format, ...)
+{
     va_list arguments;
     va_start(arguments, format);
     printf("%-8s", mark);
@@ -29,7 +30,8 @@ static void say(const char *mark, const char *format, ...) {
 
 /* The library that a driver manifest names, as the loader would look for it: a path in it is
  * relative to the manifest, a bare name is searched for. */
-static bool driver_library(const char *manifest, char *library, size_t size) {
+static bool driver_library(const char *manifest, char *library, size_t size)
+{
     json_error_t error;
     json_t *json = json_load_file(manifest, 0, &error);
     const char *path =
@@ -47,7 +49,8 @@ static bool driver_library(const char *manifest, char *library, size_t size) {
     return written > 0 && (size_t)written < size;
 }
 
-static void check_manifest(const char *manifest, findings *f) {
+static void check_manifest(const char *manifest, findings *f)
+{
     char library[PATH_MAX];
     f->manifests++;
     if (!driver_library(manifest, library, sizeof library)) {
@@ -63,12 +66,14 @@ static void check_manifest(const char *manifest, findings *f) {
     say("ok", "driver %s", manifest);
 }
 
-static int compare_names(const void *a, const void *b) {
+static int compare_names(const void *a, const void *b)
+{
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
 /* All *.json of a folder, in the order of their names. */
-static void check_folder(const char *folder, findings *f) {
+static void check_folder(const char *folder, findings *f)
+{
     DIR *directory = opendir(folder);
     if (!directory) {
         return;
@@ -97,7 +102,8 @@ static void check_folder(const char *folder, findings *f) {
 
 /* Calls visit for each part of a colon-separated list, with suffix behind it. */
 static void for_each_path(const char *list, const char *suffix,
-                          void (*visit)(const char *, findings *), findings *f) {
+                          void (*visit)(const char *, findings *), findings *f)
+{
     while (*list) {
         size_t length = strcspn(list, ":");
         char path[PATH_MAX];
@@ -109,7 +115,8 @@ static void for_each_path(const char *list, const char *suffix,
     }
 }
 
-static void check_named(const char *path, findings *f) {
+static void check_named(const char *path, findings *f)
+{
     struct stat status;
     if (stat(path, &status) != 0) {
         say("missing", "%s: there is no such driver file", path);
@@ -120,13 +127,15 @@ static void check_named(const char *path, findings *f) {
     }
 }
 
-static const char *environment(const char *name, const char *fallback) {
+static const char *environment(const char *name, const char *fallback)
+{
     const char *value = getenv(name);
     return value && *value ? value : fallback;
 }
 
 /* The places where the Vulkan loader looks for drivers. */
-static void check_drivers(findings *f) {
+static void check_drivers(findings *f)
+{
     static const char *const variables[] = {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"};
     for (int i = 0; i < 2; i++) {
         const char *value = environment(variables[i], NULL);
@@ -153,7 +162,8 @@ static void check_drivers(findings *f) {
     }
 }
 
-static bool check_loader(void) {
+static bool check_loader(void)
+{
     void *loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!loader) {
         say("missing", "the Vulkan loader: %s", dlerror());
@@ -170,7 +180,8 @@ static bool check_loader(void) {
     return good;
 }
 
-static bool check_devices(void) {
+static bool check_devices(void)
+{
     lr_error error = {0};
     device_entry *entries;
     uint32_t count;
@@ -197,7 +208,8 @@ static bool check_devices(void) {
     return usable;
 }
 
-static int run(const command *self, int argc, char **argv) {
+static int run(const command *self, int argc, char **argv)
+{
     int operands;
     parse_result parsed = options_parse(self, argc, argv, NULL, &operands);
     if (parsed != PARSE_OK) {

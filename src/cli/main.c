@@ -16,17 +16,20 @@ static const command *const commands[] = {&command_render, &command_devices, &co
                                           &command_validate, &command_schema};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
-bool terminal_present(void) {
+bool terminal_present(void)
+{
     const char *term = getenv("TERM");
     return isatty(STDERR_FILENO) && term && *term && strcmp(term, "dumb") != 0;
 }
 
-bool terminal_has_color(void) {
+bool terminal_has_color(void)
+{
     const char *no_color = getenv("NO_COLOR");
     return terminal_present() && !(no_color && *no_color);
 }
 
-static void print_message(const char *color, const char *format, va_list arguments) {
+static void print_message(const char *color, const char *format, va_list arguments)
+{
     fflush(stdout);
     if (terminal_has_color()) {
         fprintf(stderr, "\033[%smlavaray:\033[0m ", color);
@@ -37,21 +40,24 @@ static void print_message(const char *color, const char *format, va_list argumen
     fputc('\n', stderr);
 }
 
-void print_error(const char *format, ...) {
+void print_error(const char *format, ...)
+{
     va_list arguments;
     va_start(arguments, format);
     print_message("1;31", format, arguments);
     va_end(arguments);
 }
 
-void print_warning(const char *format, ...) {
+void print_warning(const char *format, ...)
+{
     va_list arguments;
     va_start(arguments, format);
     print_message("1;33", format, arguments);
     va_end(arguments);
 }
 
-int report_failure(const lr_error *error) {
+int report_failure(const lr_error *error)
+{
     print_error("%s", error->message[0] ? error->message : "failed without saying why");
     switch (error->status) {
     case LR_ERROR_ARGUMENT:
@@ -70,7 +76,8 @@ int report_failure(const lr_error *error) {
     return EXIT_DEVICE;
 }
 
-int load_scene(const char *path, lr_scene **scene, struct progress *bar) {
+int load_scene(const char *path, lr_scene **scene, struct progress *bar)
+{
     lr_error error = {0};
     char *report = NULL;
     lr_status status = lr_scene_load(path, scene, &report, &error);
@@ -93,12 +100,14 @@ int load_scene(const char *path, lr_scene **scene, struct progress *bar) {
     return code;
 }
 
-bool validation_wanted(void) {
+bool validation_wanted(void)
+{
     const char *value = getenv("LAVARAY_VALIDATION");
     return value && *value && strcmp(value, "0") != 0;
 }
 
-int check_validation(const lr_device *device, int code) {
+int check_validation(const lr_device *device, int code)
+{
     char text[1024] = "";
     uint32_t count = validation_wanted() && device
                          ? lr_device_validation_messages(device, text, sizeof text)
@@ -110,20 +119,23 @@ int check_validation(const lr_device *device, int code) {
     return EXIT_DEVICE;
 }
 
-double seconds_now(void) {
+double seconds_now(void)
+{
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-version_text format_version(uint32_t version) {
+version_text format_version(uint32_t version)
+{
     version_text result;
     snprintf(result.text, sizeof result.text, "%u.%u.%u", (unsigned)(version >> 22 & 0x7f),
              (unsigned)(version >> 12 & 0x3ff), (unsigned)(version & 0xfff));
     return result;
 }
 
-static void print_overview(FILE *file) {
+static void print_overview(FILE *file)
+{
     fputs("lavaray " LR_VERSION ": renders a scene to the same bytes on every Vulkan device\n\n"
           "Usage: lavaray COMMAND [ARGUMENTS]\n\nCommands:\n",
           file);
@@ -150,7 +162,8 @@ static void print_overview(FILE *file) {
           file);
 }
 
-static const command *find_command(const char *name) {
+static const command *find_command(const char *name)
+{
     const char *best = NULL;
     unsigned distance = UINT_MAX;
     for (int i = 0; i < COMMAND_COUNT; i++) {
@@ -169,7 +182,8 @@ static const command *find_command(const char *name) {
     return NULL;
 }
 
-static int run(int argc, char **argv) {
+static int run(int argc, char **argv)
+{
     if (argc < 2) {
         print_overview(stderr);
         return EXIT_USAGE;
@@ -198,7 +212,8 @@ static int run(int argc, char **argv) {
 
 /* A closed standard stream would lend its number to the next file that is opened, which would then
  * receive what is printed. An occupied number that refuses the transfer makes prints fail. */
-static void occupy_standard_streams(void) {
+static void occupy_standard_streams(void)
+{
     for (int fd = 0; fd <= 2; fd++) {
         if (fcntl(fd, F_GETFD) == -1 && errno == EBADF) {
             int opened = open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
@@ -209,7 +224,8 @@ static void occupy_standard_streams(void) {
     }
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char **argv)
+{
     occupy_standard_streams();
     signal(SIGPIPE, SIG_IGN);
     if (!isatty(STDOUT_FILENO)) {

@@ -11,7 +11,8 @@ enum { NAME_MAX_LENGTH = 40, HELP_COLUMN = 24 };
 
 /* Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours
  * cost one each. */
-static unsigned edit_distance(const char *a, const char *b) {
+static unsigned edit_distance(const char *a, const char *b)
+{
     size_t a_length = strlen(a), b_length = strlen(b);
     if (a_length > NAME_MAX_LENGTH || b_length > NAME_MAX_LENGTH) {
         return UINT_MAX;
@@ -38,7 +39,8 @@ static unsigned edit_distance(const char *a, const char *b) {
 }
 
 const char *nearest_name(const char *typed, const char *candidate, const char *best,
-                         unsigned *distance) {
+                         unsigned *distance)
+{
     size_t length = strlen(typed);
     unsigned d = edit_distance(typed, candidate);
     if (length >= 2 && strncmp(typed, candidate, length) == 0) {
@@ -52,7 +54,8 @@ const char *nearest_name(const char *typed, const char *candidate, const char *b
 }
 
 /* Whether text is one of the words of "a|b|c"; length is of text. */
-static bool in_list(const char *list, const char *text, size_t length) {
+static bool in_list(const char *list, const char *text, size_t length)
+{
     while (list && *list) {
         size_t word = strcspn(list, "|");
         if (word == length && strncmp(list, text, length) == 0) {
@@ -64,12 +67,14 @@ static bool in_list(const char *list, const char *text, size_t length) {
 }
 
 static parse_result usage_error(const command *self, const char *what, const char *name,
-                                const char *rest) {
+                                const char *rest)
+{
     print_error("%s%s%s; see lavaray %s --help", what, name, rest, self->name);
     return PARSE_ERROR;
 }
 
-static parse_result unknown_option(const command *self, const char *argument, size_t length) {
+static parse_result unknown_option(const command *self, const char *argument, size_t length)
+{
     char typed[NAME_MAX_LENGTH + 1];
     snprintf(typed, sizeof typed, "%.*s", (int)(length < INT_MAX ? length : INT_MAX), argument);
     const char *name = typed + strspn(typed, "-");
@@ -95,7 +100,8 @@ static parse_result unknown_option(const command *self, const char *argument, si
 }
 
 static bool parse_integer(const char *text, const char **end, int64_t min, int64_t max,
-                          int64_t *value) {
+                          int64_t *value)
+{
     const char *digits = text + (*text == '-');
     if (*digits < '0' || *digits > '9') {
         return false; /* strtoll would take spaces and a plus sign */
@@ -110,7 +116,8 @@ static bool parse_integer(const char *text, const char **end, int64_t min, int64
 
 /* `count` integers with separators[i] behind the i-th; the first two of four may be min - 1. */
 static bool parse_integers(const char *text, const char *separators, unsigned count,
-                           const int64_t *min, int64_t max, uint32_t *values) {
+                           const int64_t *min, int64_t max, uint32_t *values)
+{
     for (unsigned i = 0; i < count; i++) {
         int64_t value;
         if (!parse_integer(text, &text, min[i], max, &value)) {
@@ -126,7 +133,8 @@ static bool parse_integers(const char *text, const char *separators, unsigned co
 }
 
 static parse_result store_value(const command *self, const option *o, const char *text,
-                                void *values) {
+                                void *values)
+{
     char *target = (char *)values + o->offset;
     char expected[200];
     long long min = o->min, max = o->max;
@@ -190,7 +198,8 @@ static parse_result store_value(const command *self, const option *o, const char
 /* The option that argument names, NULL for none. *value is what is attached to it (behind "=" or
  * directly behind a letter) or NULL; *length is the length of the name as typed. */
 static const option *find_option(const command *self, const char *argument, const char **value,
-                                 size_t *length) {
+                                 size_t *length)
+{
     bool is_long = argument[1] == '-';
     const char *name = argument + (is_long ? 2 : 1);
     size_t name_length = is_long ? strcspn(name, "=") : 1;
@@ -209,7 +218,8 @@ static const option *find_option(const command *self, const char *argument, cons
     return NULL;
 }
 
-static parse_result check_operands(const command *self, int count, char **operands) {
+static parse_result check_operands(const command *self, int count, char **operands)
+{
     if (count < self->min_operands) {
         return usage_error(self, "no scene given", "", "");
     }
@@ -224,7 +234,8 @@ static parse_result check_operands(const command *self, int count, char **operan
 }
 
 parse_result options_parse(const command *self, int argc, char **argv, void *values,
-                           int *operand_count) {
+                           int *operand_count)
+{
     uint64_t seen = 0;
     int operands = 0;
     bool only_operands = false;
@@ -272,7 +283,8 @@ parse_result options_parse(const command *self, int argc, char **argv, void *val
     return check_operands(self, operands, argv);
 }
 
-static void print_option(const option *o) {
+static void print_option(const option *o)
+{
     char left[80];
     snprintf(left, sizeof left, "%c%c%s --%s%s%s", o->letter ? '-' : ' ',
              o->letter ? o->letter : ' ', o->letter ? "," : " ", o->name, o->value ? " " : "",
@@ -291,7 +303,8 @@ static void print_option(const option *o) {
     putchar('\n');
 }
 
-void options_print_help(const command *self) {
+void options_print_help(const command *self)
+{
     printf("Usage: lavaray %s%s%s%s\n\n%s\n", self->name, *self->operands ? " " : "",
            self->operands, self->option_count ? " [FLAGS]" : "", self->details);
     bool tests = false;

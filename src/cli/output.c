@@ -10,7 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static bool folder_of(const char *path, char *folder, size_t size) {
+static bool folder_of(const char *path, char *folder, size_t size)
+{
     const char *slash = strrchr(path, '/');
     int length = slash ? (int)(slash - path) : 0;
     int written = slash == path ? snprintf(folder, size, "/")
@@ -19,7 +20,8 @@ static bool folder_of(const char *path, char *folder, size_t size) {
     return written > 0 && (size_t)written < size;
 }
 
-int check_writable(const char *path) {
+int check_writable(const char *path)
+{
     char folder[PATH_MAX];
     char resolved[PATH_MAX];
     struct stat status;
@@ -60,7 +62,8 @@ int check_writable(const char *path) {
     return EXIT_FINE;
 }
 
-bool same_file(const char *a, const char *b) {
+bool same_file(const char *a, const char *b)
+{
     struct stat sa, sb;
     return stat(a, &sa) == 0 && stat(b, &sb) == 0 && S_ISREG(sa.st_mode) &&
            sa.st_dev == sb.st_dev && sa.st_ino == sb.st_ino;

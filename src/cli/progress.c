@@ -11,12 +11,14 @@
 
 static volatile sig_atomic_t interrupt_flag;
 
-static void on_signal(int number) {
+static void on_signal(int number)
+{
     (void)number;
     interrupt_flag = 1;
 }
 
-void catch_interrupts(void) {
+void catch_interrupts(void)
+{
     static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
     for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
         struct sigaction old, action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
@@ -27,11 +29,13 @@ void catch_interrupts(void) {
     }
 }
 
-bool interrupted(void) {
+bool interrupted(void)
+{
     return interrupt_flag != 0;
 }
 
-static int terminal_columns(void) {
+static int terminal_columns(void)
+{
     struct winsize size;
     if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
         return size.ws_col;
@@ -41,7 +45,8 @@ static int terminal_columns(void) {
     return count > 0 ? count : 80;
 }
 
-static void format_time(char *text, size_t size, double seconds) {
+static void format_time(char *text, size_t size, double seconds)
+{
     unsigned s = seconds < 359999 ? (unsigned)(seconds + 0.5) : 359999;
     if (s < 60) {
         snprintf(text, size, "%u s left", s);
@@ -54,7 +59,8 @@ static void format_time(char *text, size_t size, double seconds) {
 
 /* "tracing [#####.....]  52 %  3 s left", or as much of it as the width has room for. The last
  * column stays free: a character there would make some terminals start a new line. */
-static void draw(progress *p, double fraction) {
+static void draw(progress *p, double fraction)
+{
     enum { LINE_MAX_LENGTH = 100, BAR_MAX_LENGTH = 40, BAR_MIN_LENGTH = 8 };
     int room = terminal_columns() - 1;
     room = room < LINE_MAX_LENGTH ? room : LINE_MAX_LENGTH;
@@ -89,11 +95,13 @@ static void draw(progress *p, double fraction) {
     fflush(stderr);
 }
 
-void progress_start(progress *p, bool quiet) {
+void progress_start(progress *p, bool quiet)
+{
     *p = (progress){.shown = !quiet && terminal_present(), .color = terminal_has_color()};
 }
 
-void progress_phase(progress *p, const char *phase) {
+void progress_phase(progress *p, const char *phase)
+{
     p->phase = phase;
     p->phase_start = seconds_now();
     p->last_drawn = 0;
@@ -102,7 +110,8 @@ void progress_phase(progress *p, const char *phase) {
     }
 }
 
-bool progress_update(void *user, double fraction) {
+bool progress_update(void *user, double fraction)
+{
     progress *p = user;
     if (!p->shown) {
         return !interrupted();
@@ -120,7 +129,8 @@ bool progress_update(void *user, double fraction) {
     return !interrupted();
 }
 
-void progress_clear(progress *p) {
+void progress_clear(progress *p)
+{
     if (p && p->shown) {
         fputs("\r\033[K", stderr);
         fflush(stderr);

@@ -143,14 +143,16 @@ static const option options[] = {
      .for_tests = true},
 };
 
-static int wrong_usage(const command *self, const char *text) {
+static int wrong_usage(const command *self, const char *text)
+{
     print_error("%s; see lavaray %s --help", text, self->name);
     return EXIT_USAGE;
 }
 
 /* What the flags mean together, and whether the files can be written. */
 static int check_values(const command *self, const values *v, const char *scene,
-                        lr_encoding *encoding) {
+                        lr_encoding *encoding)
+{
     if (!v->output) {
         return wrong_usage(self, "where to? Give -o FILE.png, .ppm or .pfm");
     }
@@ -190,7 +192,8 @@ static int check_values(const command *self, const values *v, const char *scene,
     return code == EXIT_FINE && v->stats ? check_writable(v->stats) : code;
 }
 
-static lr_render_options make_options(const values *v, progress *p) {
+static lr_render_options make_options(const values *v, progress *p)
+{
     return (lr_render_options){
         .width = v->size.width,
         .height = v->size.height,
@@ -209,14 +212,16 @@ static lr_render_options make_options(const values *v, progress *p) {
     };
 }
 
-static int say_interrupted(void) {
+static int say_interrupted(void)
+{
     print_error("interrupted, nothing written");
     return EXIT_INTERRUPTED;
 }
 
 /* Traces and writes; fills what record does not hold yet. */
 static int trace_and_write(const values *v, lr_device *device, const lr_scene *scene,
-                           lr_encoding encoding, progress *p, double start, render_record *record) {
+                           lr_encoding encoding, progress *p, double start, render_record *record)
+{
     lr_error error = {0};
     lr_picture picture = {0};
     lr_render_options render_options = make_options(v, p);
@@ -261,7 +266,8 @@ done:
     return code;
 }
 
-static int run(const command *self, int argc, char **argv) {
+static int run(const command *self, int argc, char **argv)
+{
     double start = seconds_now();
     values v = {.samples = -1, .depth = -1, .seed = -1, .maxval = -1, .exposure = NAN};
     int operands;

@@ -3,7 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static int run(const command *self, int argc, char **argv) {
+static int run(const command *self, int argc, char **argv)
+{
     int operands;
     parse_result parsed = options_parse(self, argc, argv, NULL, &operands);
     if (parsed != PARSE_OK) {

@@ -105,7 +105,8 @@ static const char *const expected[SCENE_COUNT] = {
 };
 
 /* Renders one scene; false after printing why it cannot be. */
-static bool render_scene(lr_device *device, const test_scene *test, char hash[65], int *code) {
+static bool render_scene(lr_device *device, const test_scene *test, char hash[65], int *code)
+{
     lr_scene *scene = NULL;
     char *report = NULL;
     lr_error error = {0};
@@ -132,7 +133,8 @@ static bool render_scene(lr_device *device, const test_scene *test, char hash[65
     return true;
 }
 
-static void print_row(const lr_device_info *info, bool exact, char hashes[][65], int same) {
+static void print_row(const lr_device_info *info, bool exact, char hashes[][65], int same)
+{
     printf("\nFor docs/exact.md:\n| %s | %s | %s | %s | %s | %d of %d |", info->name, info->driver,
            format_version(info->api_version).text, info->software ? "software" : "GPU",
            exact ? "passes" : "fails", same, (int)SCENE_COUNT);
@@ -142,7 +144,8 @@ static void print_row(const lr_device_info *info, bool exact, char hashes[][65],
     printf(" |\n");
 }
 
-int run_self_test(uint32_t device_index) {
+int run_self_test(uint32_t device_index)
+{
     char select[16];
     snprintf(select, sizeof select, "%u", (unsigned)device_index);
     lr_device_desc desc = {.select = select, .validation = validation_wanted()};

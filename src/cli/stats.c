@@ -11,44 +11,52 @@
 
 #include <jansson.h>
 
-static uint64_t rays_traced(const lr_render_stats *s) {
+static uint64_t rays_traced(const lr_render_stats *s)
+{
     return s->primary.traced + s->reflected.traced + s->refracted.traced + s->shadow.traced;
 }
 
-static double rays_per_second(const lr_render_stats *s) {
+static double rays_per_second(const lr_render_stats *s)
+{
     return s->trace_seconds > 0 ? (double)rays_traced(s) / s->trace_seconds : 0;
 }
 
-static uint64_t peak_memory(void) {
+static uint64_t peak_memory(void)
+{
     struct rusage usage;
     return getrusage(RUSAGE_SELF, &usage) == 0 ? (uint64_t)usage.ru_maxrss * 1024 : 0;
 }
 
-static const char *output_name(const render_record *r) {
+static const char *output_name(const render_record *r)
+{
     return strcmp(r->output, "-") == 0 ? "standard output" : r->output;
 }
 
-void print_record_line(const render_record *r) {
+void print_record_line(const render_record *r)
+{
     fprintf(stderr, "wrote %s, %u×%u, %u sample%s, %.1f Mray/s on %s, %.1f s\n", output_name(r),
             (unsigned)r->width, (unsigned)r->height, (unsigned)r->stats.samples,
             r->stats.samples == 1 ? "" : "s", 1e-6 * rays_per_second(&r->stats), r->device.name,
             r->total_seconds);
 }
 
-static void print_rays(const char *name, uint64_t traced, uint64_t hit) {
+static void print_rays(const char *name, uint64_t traced, uint64_t hit)
+{
     if (traced) {
         fprintf(stderr, "  %-11s %14" PRIu64 "  %5.1f %% hit\n", name, traced,
                 100.0 * (double)hit / (double)traced);
     }
 }
 
-static void print_count(const char *name, uint64_t count) {
+static void print_count(const char *name, uint64_t count)
+{
     if (count) {
         fprintf(stderr, "  %-26s %12" PRIu64 "\n", name, count);
     }
 }
 
-void print_record(const render_record *r) {
+void print_record(const render_record *r)
+{
     const lr_render_stats *s = &r->stats;
     fprintf(stderr,
             "wrote %s, %u×%u of %u×%u, %u sample%s, depth %u, seed %u\n"
@@ -79,7 +87,8 @@ void print_record(const render_record *r) {
             (double)peak_memory() / (1 << 20));
 }
 
-void print_record_warnings(const render_record *r) {
+void print_record_warnings(const render_record *r)
+{
     const lr_render_stats *s = &r->stats;
     if (!r->exact) {
         print_warning("%s fails the arithmetic self-test: this picture may differ from that of "
@@ -102,11 +111,13 @@ void print_record_warnings(const render_record *r) {
     }
 }
 
-static json_t *rays_json(uint64_t traced, uint64_t hit) {
+static json_t *rays_json(uint64_t traced, uint64_t hit)
+{
     return json_pack("{s:I, s:I}", "traced", (json_int_t)traced, "hit", (json_int_t)hit);
 }
 
-static json_t *record_json(const render_record *r) {
+static json_t *record_json(const render_record *r)
+{
     const lr_render_stats *s = &r->stats;
     /* Paths may hold bytes that are not UTF-8, which JSON cannot: such a path becomes null. */
     json_t *scene = json_string(r->scene), *output = json_string(r->output);
@@ -141,7 +152,8 @@ static json_t *record_json(const render_record *r) {
                      "seconds", seconds, "peak_memory_bytes", (json_int_t)peak_memory());
 }
 
-int write_record(const render_record *r, const char *path) {
+int write_record(const render_record *r, const char *path)
+{
     json_t *json = record_json(r);
     char *dumped = json ? json_dumps(json, JSON_INDENT(2)) : NULL;
     size_t length = dumped ? strlen(dumped) : 0;

@@ -16,11 +16,13 @@ static const option options[] = {
      .help = "print errors only"},
 };
 
-static const char *plural(uint32_t count) {
+static const char *plural(uint32_t count)
+{
     return count == 1 ? "" : "s";
 }
 
-static int run(const command *self, int argc, char **argv) {
+static int run(const command *self, int argc, char **argv)
+{
     values v = {0};
     int operands;
     parse_result parsed = options_parse(self, argc, argv, &v, &operands);

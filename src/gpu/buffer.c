@@ -111,8 +111,7 @@ lr_status lr_buffer_upload(lr_device *device, lr_buffer *buffer, const void *byt
                            lr_error *error)
 {
     lr_buffer staging;
-    lr_status status =
-        lr_buffer_create(device, LR_BUFFER_HOST, size, "an upload", &staging, error);
+    lr_status status = lr_buffer_create(device, LR_BUFFER_HOST, size, "an upload", &staging, error);
     if (status)
         return status;
     memcpy(staging.mapped, bytes, size);

@@ -28,8 +28,7 @@ static void bind(lr_device *device, const lr_layout *layout, VkPipeline program,
 }
 
 void lr_commands_dispatch(lr_device *device, const lr_layout *layout, VkPipeline program,
-                          VkDescriptorSet set, const void *push, uint32_t x, uint32_t y,
-                          uint32_t z)
+                          VkDescriptorSet set, const void *push, uint32_t x, uint32_t y, uint32_t z)
 {
     bind(device, layout, program, set, push);
     device->vk.vkCmdDispatch(device->commands, x, y, z);
@@ -55,10 +54,10 @@ void lr_commands_barrier(lr_device *device)
     };
     VkPipelineStageFlags work =
         VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
-    device->vk.vkCmdPipelineBarrier(
-        device->commands, work,
-        work | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &barrier, 0,
-        NULL, 0, NULL);
+    device->vk.vkCmdPipelineBarrier(device->commands, work,
+                                    work | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT |
+                                        VK_PIPELINE_STAGE_HOST_BIT,
+                                    0, 1, &barrier, 0, NULL, 0, NULL);
 }
 
 void lr_commands_copy(lr_device *device, const lr_buffer *from, const lr_buffer *to,

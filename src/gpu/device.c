@@ -67,7 +67,8 @@ static lr_status create_instance(lr_device *device, bool validation, lr_error *e
         .pfnUserCallback = on_message,
         .pUserData = device,
     };
-    VkValidationFeatureEnableEXT enable = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+    VkValidationFeatureEnableEXT enable =
+        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
     VkValidationFeaturesEXT features = {
         .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
         .pNext = &messenger,
@@ -101,8 +102,7 @@ static lr_status enumerate(lr_device *device, VkPhysicalDevice physical[DEVICES_
                            uint32_t *count, lr_error *error)
 {
     *count = DEVICES_MAX;
-    VkResult result =
-        device->vk.vkEnumeratePhysicalDevices(device->instance, count, physical);
+    VkResult result = device->vk.vkEnumeratePhysicalDevices(device->instance, count, physical);
     if (result != VK_SUCCESS && result != VK_INCOMPLETE)
         return lr_vk_fail(error, "vkEnumeratePhysicalDevices", result);
     if (*count == 0)
@@ -229,8 +229,8 @@ static bool matches(const char *select, const lr_device_info *info, uint32_t ind
 /* A discrete GPU is preferred to another GPU, and any GPU to a CPU; then the driver's order. */
 static int preference(const lr_vk *vk, VkPhysicalDevice physical)
 {
-    VkPhysicalDeviceProperties2 properties = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+    VkPhysicalDeviceProperties2 properties = {.sType =
+                                                  VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
     vk->vkGetPhysicalDeviceProperties2(physical, &properties);
     switch (properties.properties.deviceType) {
     case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:

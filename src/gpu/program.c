@@ -60,8 +60,8 @@ void lr_layout_destroy(lr_device *device, lr_layout *layout)
     *layout = (lr_layout){0};
 }
 
-lr_status lr_set_create(lr_device *device, const lr_layout *layout,
-                        const lr_buffer *const *buffers, VkDescriptorSet *set, lr_error *error)
+lr_status lr_set_create(lr_device *device, const lr_layout *layout, const lr_buffer *const *buffers,
+                        VkDescriptorSet *set, lr_error *error)
 {
     lr_status status = LR_OK;
     lr_vk *vk = &device->vk;
@@ -91,8 +91,8 @@ fail:
     return status;
 }
 
-lr_status lr_program_create(lr_device *device, const lr_layout *layout,
-                            const lr_program_desc *desc, VkPipeline *program, lr_error *error)
+lr_status lr_program_create(lr_device *device, const lr_layout *layout, const lr_program_desc *desc,
+                            VkPipeline *program, lr_error *error)
 {
     lr_vk *vk = &device->vk;
     VkShaderModule module = VK_NULL_HANDLE;

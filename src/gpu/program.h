@@ -28,17 +28,18 @@ lr_status lr_layout_create(lr_device *device, const lr_layout_desc *desc, lr_lay
 void lr_layout_destroy(lr_device *device, lr_layout *layout);
 
 /* A descriptor set with buffers[i] at binding i. It lives as long as the layout. */
-lr_status lr_set_create(lr_device *device, const lr_layout *layout,
-                        const lr_buffer *const *buffers, VkDescriptorSet *set, lr_error *error);
+lr_status lr_set_create(lr_device *device, const lr_layout *layout, const lr_buffer *const *buffers,
+                        VkDescriptorSet *set, lr_error *error);
 
 typedef struct lr_program_desc {
-    const uint32_t *words; /* decorated SPIR-V; specialised here, and the device's float modes added */
+    const uint32_t
+        *words; /* decorated SPIR-V; specialised here, and the device's float modes added */
     size_t word_count;
     const uint32_t *constants; /* specialisation constant i has the value constants[i] */
     uint32_t constant_count;
 } lr_program_desc;
 
-lr_status lr_program_create(lr_device *device, const lr_layout *layout,
-                            const lr_program_desc *desc, VkPipeline *program, lr_error *error);
+lr_status lr_program_create(lr_device *device, const lr_layout *layout, const lr_program_desc *desc,
+                            VkPipeline *program, lr_error *error);
 
 #endif

@@ -45,12 +45,14 @@ enum {
     OP_MEMBER_DECORATE_STRING = 5633,
 };
 
-void lr_spirv_free(lr_spirv *module) {
+void lr_spirv_free(lr_spirv *module)
+{
     free(module->words);
     *module = (lr_spirv){0};
 }
 
-static lr_status check_tiling(const uint32_t *words, size_t count, lr_error *error) {
+static lr_status check_tiling(const uint32_t *words, size_t count, lr_error *error)
+{
     if (!words || count < SPIRV_HEADER_WORDS)
         return lr_fail(error, LR_ERROR_ARGUMENT,
                        "not a SPIR-V module: %zu words, fewer than the header has", count);
@@ -84,7 +86,8 @@ static lr_status check_tiling(const uint32_t *words, size_t count, lr_error *err
 }
 
 /* The smallest length of an instruction whose operands this file reads; 1 for all others. */
-static uint32_t least_length(uint32_t opcode) {
+static uint32_t least_length(uint32_t opcode)
+{
     switch (opcode) {
     case OP_CAPABILITY:
     case OP_EXTENSION:
@@ -103,7 +106,8 @@ static uint32_t least_length(uint32_t opcode) {
 }
 
 /* Where in the instruction the id stands that this file uses as an array index; 0 for none. */
-static uint32_t id_position(uint32_t opcode) {
+static uint32_t id_position(uint32_t opcode)
+{
     switch (opcode) {
     case OP_NAME:
     case OP_DECORATE:
@@ -118,7 +122,8 @@ static uint32_t id_position(uint32_t opcode) {
 }
 
 lr_status spirv_index_create(spirv_index *index, const uint32_t *words, size_t count,
-                             lr_error *error) {
+                             lr_error *error)
+{
     *index = (spirv_index){0};
     lr_status status = check_tiling(words, count, error);
     if (status != LR_OK)
@@ -128,7 +133,8 @@ lr_status spirv_index_create(spirv_index *index, const uint32_t *words, size_t c
     index->no_contraction = calloc(index->bound, sizeof *index->no_contraction);
     if (!index->names || !index->no_contraction)
         return lr_fail(error, LR_ERROR_MEMORY, "out of memory for a SPIR-V module");
-    SPIRV_EACH(at, words, count) {
+    SPIRV_EACH(at, words, count)
+    {
         uint32_t opcode = spirv_opcode(words[at]);
         if (spirv_length(words[at]) < least_length(opcode))
             return lr_fail(error, LR_ERROR_ARGUMENT,
@@ -150,13 +156,15 @@ lr_status spirv_index_create(spirv_index *index, const uint32_t *words, size_t c
     return LR_OK;
 }
 
-void spirv_index_free(spirv_index *index) {
+void spirv_index_free(spirv_index *index)
+{
     free(index->names);
     free(index->no_contraction);
     *index = (spirv_index){0};
 }
 
-void spirv_string(const uint32_t *words, size_t first, size_t end, char *text, size_t size) {
+void spirv_string(const uint32_t *words, size_t first, size_t end, char *text, size_t size)
+{
     size_t length = 0;
     for (size_t at = first; at < end; at++)
         for (int shift = 0; shift < 32 && length + 1 < size; shift += 8) {
@@ -170,7 +178,8 @@ done:
 }
 
 void spirv_function_name(const spirv_index *index, const uint32_t *words, uint32_t id, char *text,
-                         size_t size) {
+                         size_t size)
+{
     uint32_t at = index->names[id];
     text[0] = 0;
     if (at)
@@ -180,11 +189,13 @@ void spirv_function_name(const spirv_index *index, const uint32_t *words, uint32
         snprintf(text, size, "%%%" PRIu32, id);
 }
 
-bool spirv_function_is_box(const char *name) {
+bool spirv_function_is_box(const char *name)
+{
     return strncmp(name, "box_", 4) == 0;
 }
 
-bool spirv_is_float_arithmetic(uint32_t opcode) {
+bool spirv_is_float_arithmetic(uint32_t opcode)
+{
     switch (opcode) {
     case OP_F_NEGATE:
     case OP_F_ADD:
@@ -202,7 +213,8 @@ bool spirv_is_float_arithmetic(uint32_t opcode) {
 /* The specification's logical layout of a module, as far as insertions need it. */
 enum section { CAPABILITIES, EXTENSIONS, IMPORTS, ENTRY_POINTS, MODES, NAMES, ANNOTATIONS, BODY };
 
-static enum section section_of(uint32_t opcode) {
+static enum section section_of(uint32_t opcode)
+{
     switch (opcode) {
     case OP_CAPABILITY:
         return CAPABILITIES;
@@ -239,8 +251,10 @@ static enum section section_of(uint32_t opcode) {
 }
 
 /* The first word behind a section. */
-static size_t section_end(const uint32_t *words, size_t count, enum section section) {
-    SPIRV_EACH(at, words, count) {
+static size_t section_end(const uint32_t *words, size_t count, enum section section)
+{
+    SPIRV_EACH(at, words, count)
+    {
         if (section_of(spirv_opcode(words[at])) > section)
             return at;
     }
@@ -248,7 +262,8 @@ static size_t section_end(const uint32_t *words, size_t count, enum section sect
 }
 
 static lr_status copy_with_room(const uint32_t *words, size_t count, size_t extra, lr_spirv *out,
-                                lr_error *error) {
+                                lr_error *error)
+{
     *out = (lr_spirv){.words = malloc((count + extra) * sizeof *words)};
     if (!out->words)
         return lr_fail(error, LR_ERROR_MEMORY, "out of memory for a SPIR-V module");
@@ -258,7 +273,8 @@ static lr_status copy_with_room(const uint32_t *words, size_t count, size_t extr
 }
 
 /* Inserts one instruction behind a section; the caller has made room for it. */
-static void insert(lr_spirv *module, enum section section, const uint32_t *instruction) {
+static void insert(lr_spirv *module, enum section section, const uint32_t *instruction)
+{
     size_t length = spirv_length(instruction[0]);
     size_t at = section_end(module->words, module->count, section);
     memmove(module->words + at + length, module->words + at,
@@ -267,7 +283,8 @@ static void insert(lr_spirv *module, enum section section, const uint32_t *instr
     module->count += length;
 }
 
-lr_status lr_spirv_decorate(const uint32_t *words, size_t count, lr_spirv *out, lr_error *error) {
+lr_status lr_spirv_decorate(const uint32_t *words, size_t count, lr_spirv *out, lr_error *error)
+{
     *out = (lr_spirv){0};
     spirv_index index;
     lr_status status = spirv_index_create(&index, words, count, error);
@@ -278,7 +295,8 @@ lr_status lr_spirv_decorate(const uint32_t *words, size_t count, lr_spirv *out, 
         goto done;
     size_t place = section_end(words, count, ANNOTATIONS), added = 0;
     bool in_box = false;
-    SPIRV_EACH(at, words, count) {
+    SPIRV_EACH(at, words, count)
+    {
         uint32_t opcode = spirv_opcode(words[at]);
         if (opcode == OP_FUNCTION) {
             char name[64];
@@ -305,9 +323,11 @@ done:
     return status;
 }
 
-static bool has_instruction(const lr_spirv *module, const uint32_t *instruction) {
+static bool has_instruction(const lr_spirv *module, const uint32_t *instruction)
+{
     size_t length = spirv_length(instruction[0]);
-    SPIRV_EACH(at, module->words, module->count) {
+    SPIRV_EACH(at, module->words, module->count)
+    {
         if (module->words[at] == instruction[0] &&
             memcmp(module->words + at, instruction, length * sizeof *instruction) == 0)
             return true;
@@ -315,13 +335,15 @@ static bool has_instruction(const lr_spirv *module, const uint32_t *instruction)
     return false;
 }
 
-static void insert_once(lr_spirv *module, enum section section, const uint32_t *instruction) {
+static void insert_once(lr_spirv *module, enum section section, const uint32_t *instruction)
+{
     if (!has_instruction(module, instruction))
         insert(module, section, instruction);
 }
 
 lr_status lr_spirv_add_modes(const uint32_t *words, size_t count, const lr_spirv_modes *modes,
-                             lr_spirv *out, lr_error *error) {
+                             lr_spirv *out, lr_error *error)
+{
     *out = (lr_spirv){0};
     if (modes->denorm_preserve && modes->denorm_flush_to_zero)
         return lr_fail(error, LR_ERROR_ARGUMENT,
@@ -346,7 +368,8 @@ lr_status lr_spirv_add_modes(const uint32_t *words, size_t count, const lr_spirv
     lr_status status = spirv_index_create(&index, words, count, error);
     if (status != LR_OK)
         goto done;
-    SPIRV_EACH(at, words, count) {
+    SPIRV_EACH(at, words, count)
+    {
         entries += spirv_opcode(words[at]) == OP_ENTRY_POINT;
     }
     status = copy_with_room(words, count, table_size * (2 + 4 * entries) + 7, out, error);
@@ -357,7 +380,8 @@ lr_status lr_spirv_add_modes(const uint32_t *words, size_t count, const lr_spirv
             continue;
         insert_once(out, CAPABILITIES, (uint32_t[]){2u << 16 | OP_CAPABILITY, table[i].capability});
         insert_once(out, EXTENSIONS, extension);
-        SPIRV_EACH(at, words, count) {
+        SPIRV_EACH(at, words, count)
+        {
             if (spirv_opcode(words[at]) == OP_ENTRY_POINT)
                 insert_once(
                     out, MODES,

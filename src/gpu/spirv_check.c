@@ -53,20 +53,23 @@ typedef struct checker {
     lr_error *error;
 } checker;
 
-static lr_status refuse(const checker *c, const char *instruction, const spirv_rule *rule) {
+static lr_status refuse(const checker *c, const char *instruction, const spirv_rule *rule)
+{
     return lr_fail(c->error, LR_ERROR_ARGUMENT, "%s%s: %s breaks the rule \"%s\": %s",
                    c->function[0] ? "in function " : "at module scope",
                    c->function[0] ? c->function : "", instruction, rule->name, rule->text);
 }
 
-static bool contains(const uint32_t *values, size_t count, uint32_t value) {
+static bool contains(const uint32_t *values, size_t count, uint32_t value)
+{
     for (size_t i = 0; i < count; i++)
         if (values[i] == value)
             return true;
     return false;
 }
 
-static const spirv_operation *find_operation(uint32_t opcode) {
+static const spirv_operation *find_operation(uint32_t opcode)
+{
     size_t low = 0, high = LENGTH(spirv_operations);
     while (low < high) {
         size_t middle = (low + high) / 2;
@@ -82,24 +85,28 @@ static const spirv_operation *find_operation(uint32_t opcode) {
 
 /* The instruction that defines an id; all zero, which is no instruction that anything looks for,
  * when there is none. */
-static const uint32_t *definition(const checker *c, uint32_t id) {
+static const uint32_t *definition(const checker *c, uint32_t id)
+{
     static const uint32_t none[16];
     return id < c->index.bound && c->definitions[id] ? c->words + c->definitions[id] : none;
 }
 
 /* A type without its vector. */
-static const uint32_t *scalar_type(const checker *c, uint32_t type) {
+static const uint32_t *scalar_type(const checker *c, uint32_t type)
+{
     const uint32_t *defined = definition(c, type);
     return spirv_opcode(*defined) == OP_TYPE_VECTOR ? definition(c, defined[2]) : defined;
 }
 
-static bool is_float_type(const checker *c, uint32_t type) {
+static bool is_float_type(const checker *c, uint32_t type)
+{
     return spirv_opcode(*scalar_type(c, type)) == OP_TYPE_FLOAT;
 }
 
 /* Reads an instruction's operands as its line of the table describes them and records its result.
  */
-static lr_status index_operands(checker *c, size_t at, const spirv_operation *operation) {
+static lr_status index_operands(checker *c, size_t at, const spirv_operation *operation)
+{
     size_t end = at + spirv_length(c->words[at]), word = at + 1;
     for (const char *kind = operation->operands; *kind != '~';) {
         if (word == end && (*kind == 0 || *kind == '*'))
@@ -128,14 +135,16 @@ static lr_status index_operands(checker *c, size_t at, const spirv_operation *op
     return LR_OK;
 }
 
-static bool is_composite(const uint32_t *instruction) {
+static bool is_composite(const uint32_t *instruction)
+{
     uint32_t opcode = spirv_opcode(*instruction);
     return opcode == OP_CONSTANT_COMPOSITE || opcode == OP_COMPOSITE_CONSTRUCT;
 }
 
 /* Whether every component of an integer constant lies in least .. most. A specialization constant
  * is not a constant here: its value is not known yet. */
-static bool constant_in(const checker *c, uint32_t id, uint32_t least, uint32_t most) {
+static bool constant_in(const checker *c, uint32_t id, uint32_t least, uint32_t most)
+{
     const uint32_t *defined = definition(c, id);
     uint32_t length = spirv_length(*defined);
     switch (spirv_opcode(*defined)) {
@@ -157,7 +166,8 @@ static bool constant_in(const checker *c, uint32_t id, uint32_t least, uint32_t 
     }
 }
 
-static bool is_shift_amount(const checker *c, uint32_t id, uint32_t most) {
+static bool is_shift_amount(const checker *c, uint32_t id, uint32_t most)
+{
     const uint32_t *defined = definition(c, id);
     switch (spirv_opcode(*defined)) {
     case OP_BITWISE_AND:
@@ -174,7 +184,8 @@ static bool is_shift_amount(const checker *c, uint32_t id, uint32_t most) {
 
 /* The operands of OpUDiv, OpUMod and the shifts, also those inside OpSpecConstantOp. */
 static lr_status check_right_operand(const checker *c, const spirv_operation *operation,
-                                     uint32_t type, uint32_t right) {
+                                     uint32_t type, uint32_t right)
+{
     if (operation->kind == KIND_UNSIGNED_DIVISION)
         return constant_in(c, right, 1, UINT32_MAX) ? LR_OK
                                                     : refuse(c, operation->name, &rule_divisor);
@@ -186,7 +197,8 @@ static lr_status check_right_operand(const checker *c, const spirv_operation *op
     return LR_OK;
 }
 
-static lr_status check_spec_op(const checker *c, size_t at) {
+static lr_status check_spec_op(const checker *c, size_t at)
+{
     const uint32_t *word = c->words + at;
     const spirv_operation *inner = find_operation(word[3]);
     char name[64];
@@ -203,7 +215,8 @@ static lr_status check_spec_op(const checker *c, size_t at) {
     return refuse(c, name, inner->rule ? inner->rule : &rule_whitelist);
 }
 
-static lr_status check_ext_inst(const checker *c, size_t at) {
+static lr_status check_ext_inst(const checker *c, size_t at)
+{
     const uint32_t *set = definition(c, c->words[at + 3]);
     uint32_t number = c->words[at + 4];
     char name[128] = "";
@@ -225,7 +238,8 @@ static lr_status check_ext_inst(const checker *c, size_t at) {
     return refuse(c, name, known ? &rule_builtin : &rule_instruction_set);
 }
 
-static lr_status check_decoration(const checker *c, const char *name, uint32_t decoration) {
+static lr_status check_decoration(const checker *c, const char *name, uint32_t decoration)
+{
     if (contains(allowed_decorations, LENGTH(allowed_decorations), decoration))
         return LR_OK;
     if (decoration == DECORATION_RELAXED_PRECISION)
@@ -236,20 +250,23 @@ static lr_status check_decoration(const checker *c, const char *name, uint32_t d
 }
 
 /* The type of the value that an id stands for, 0 when it has none. */
-static uint32_t value_type(const checker *c, uint32_t id) {
+static uint32_t value_type(const checker *c, uint32_t id)
+{
     const uint32_t *defined = definition(c, id);
     const spirv_operation *operation = find_operation(spirv_opcode(*defined));
     return operation && operation->operands[0] == 't' ? defined[1] : 0;
 }
 
-static lr_status check_image_read(const checker *c, size_t at, const char *name) {
+static lr_status check_image_read(const checker *c, size_t at, const char *name)
+{
     const uint32_t *image = definition(c, value_type(c, c->words[at + 3]));
     if (spirv_opcode(*image) == OP_TYPE_IMAGE && image[3] == DIM_BUFFER)
         return LR_OK;
     return refuse(c, name, &rule_image_buffer);
 }
 
-static lr_status check_instruction(checker *c, size_t at) {
+static lr_status check_instruction(checker *c, size_t at)
+{
     const uint32_t *word = c->words + at;
     const spirv_operation *operation = find_operation(spirv_opcode(*word));
     if (!operation) {
@@ -302,7 +319,8 @@ static lr_status check_instruction(checker *c, size_t at) {
     return refuse(c, name, operation->rule);
 }
 
-lr_status lr_spirv_check(const uint32_t *words, size_t count, lr_error *error) {
+lr_status lr_spirv_check(const uint32_t *words, size_t count, lr_error *error)
+{
     checker c = {.words = words, .count = count, .error = error};
     lr_status status = spirv_index_create(&c.index, words, count, error);
     if (status != LR_OK)
@@ -312,12 +330,14 @@ lr_status lr_spirv_check(const uint32_t *words, size_t count, lr_error *error) {
         status = lr_fail(error, LR_ERROR_MEMORY, "out of memory for a SPIR-V module");
         goto done;
     }
-    SPIRV_EACH(at, words, count) {
+    SPIRV_EACH(at, words, count)
+    {
         const spirv_operation *operation = find_operation(spirv_opcode(words[at]));
         if (operation && (status = index_operands(&c, at, operation)) != LR_OK)
             goto done;
     }
-    SPIRV_EACH(at, words, count) {
+    SPIRV_EACH(at, words, count)
+    {
         if ((status = check_instruction(&c, at)) != LR_OK)
             goto done;
     }

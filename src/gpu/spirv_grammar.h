@@ -76,13 +76,21 @@ typedef struct spirv_operation {
 } spirv_operation;
 
 #define ALLOWED(opcode, name, operands)                                                            \
-    { opcode, "Op" name, operands, KIND_ALLOWED, NULL }
+    {                                                                                              \
+        opcode, "Op" name, operands, KIND_ALLOWED, NULL                                            \
+    }
 #define INTEGER(opcode, name, operands)                                                            \
-    { opcode, "Op" name, operands, KIND_INTEGER, NULL }
+    {                                                                                              \
+        opcode, "Op" name, operands, KIND_INTEGER, NULL                                            \
+    }
 #define SPECIAL(opcode, name, operands, kind)                                                      \
-    { opcode, "Op" name, operands, kind, NULL }
+    {                                                                                              \
+        opcode, "Op" name, operands, kind, NULL                                                    \
+    }
 #define REFUSED(opcode, name, rule)                                                                \
-    { opcode, "Op" name, "~", KIND_REFUSED, &rule }
+    {                                                                                              \
+        opcode, "Op" name, "~", KIND_REFUSED, &rule                                                \
+    }
 
 /* In ascending order of opcodes. */
 static const spirv_operation spirv_operations[] = {

@@ -14,11 +14,13 @@ enum {
 #define SPIRV_EACH(at, words, count)                                                               \
     for (size_t at = SPIRV_HEADER_WORDS; at < (count); at += spirv_length((words)[at]))
 
-static inline uint32_t spirv_opcode(uint32_t word) {
+static inline uint32_t spirv_opcode(uint32_t word)
+{
     return word & 0xffff;
 }
 
-static inline uint32_t spirv_length(uint32_t word) {
+static inline uint32_t spirv_length(uint32_t word)
+{
     return word >> 16;
 }
 

@@ -38,11 +38,11 @@ typedef struct folding {
     const uint32_t *words;
     size_t count;
     uint32_t bound;
-    uint32_t *spec_ids;   /* by id: 1 + its SpecId, 0 for none */
+    uint32_t *spec_ids;    /* by id: 1 + its SpecId, 0 for none */
     unsigned char *truths; /* by id: what is known of a bool */
-    bool *reachable;      /* by label */
-    uint32_t *ends;       /* by label: where its terminator stands */
-    bool *removed;        /* by id: defined in a block that is gone */
+    bool *reachable;       /* by label */
+    uint32_t *ends;        /* by label: where its terminator stands */
+    bool *removed;         /* by id: defined in a block that is gone */
     const uint32_t *constants;
     uint32_t constant_count;
 } folding;
@@ -130,7 +130,8 @@ static void find_reachable(folding *f)
 {
     uint32_t label = 0;
     bool entry = false;
-    SPIRV_EACH(word, f->words, f->count) {
+    SPIRV_EACH(word, f->words, f->count)
+    {
         const uint32_t *w = at(f, word);
         switch (spirv_opcode(w[0])) {
         case OP_DECORATE:
@@ -236,7 +237,8 @@ static size_t emit(const folding *f, size_t word, uint32_t label, uint32_t *out)
 static void find_removed(folding *f)
 {
     bool inside = false, gone = false;
-    SPIRV_EACH(word, f->words, f->count) {
+    SPIRV_EACH(word, f->words, f->count)
+    {
         const uint32_t *w = at(f, word);
         uint32_t opcode = spirv_opcode(w[0]), length = spirv_length(w[0]);
         if (opcode == OP_LABEL)
@@ -251,7 +253,8 @@ static void find_removed(folding *f)
             f->removed[w[2]] = true;
     }
     inside = gone = false;
-    SPIRV_EACH(word, f->words, f->count) {
+    SPIRV_EACH(word, f->words, f->count)
+    {
         const uint32_t *w = at(f, word);
         uint32_t opcode = spirv_opcode(w[0]), length = spirv_length(w[0]);
         if (opcode == OP_LABEL)
@@ -299,7 +302,8 @@ lr_status lr_spirv_specialize(const uint32_t *words, size_t count, const uint32_
     out->count = SPIRV_HEADER_WORDS;
     bool inside = false;
     uint32_t label = 0;
-    SPIRV_EACH(word, words, count) {
+    SPIRV_EACH(word, words, count)
+    {
         uint32_t opcode = spirv_opcode(words[word]);
         if (opcode == OP_LABEL)
             inside = true, label = words[word + 1];

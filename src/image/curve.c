@@ -5,13 +5,15 @@
 
 #include "base/memory.h"
 
-static uint32_t float_bits(float x) {
+static uint32_t float_bits(float x)
+{
     uint32_t bits;
     memcpy(&bits, &x, sizeof bits);
     return bits;
 }
 
-static float bits_float(uint32_t bits) {
+static float bits_float(uint32_t bits)
+{
     float x;
     memcpy(&x, &bits, sizeof x);
     return x;
@@ -19,7 +21,8 @@ static float bits_float(uint32_t bits) {
 
 /* x^(1/5) for 0.05 <= x <= 1. The start is the tangent at 1, which lies above the root, and from
  * there Newton's steps fall towards it; eight of them reach the last bit. */
-static double fifth_root(double x) {
+static double fifth_root(double x)
+{
     double root = (4 + x) / 5;
     for (int i = 0; i < 8; i++) {
         double square = root * root;
@@ -29,7 +32,8 @@ static double fifth_root(double x) {
 }
 
 /* The linear value of an encoded one, 0..1 (IEC 61966-2-1). */
-static double srgb_inverse(double encoded) {
+static double srgb_inverse(double encoded)
+{
     if (encoded <= 0.04045)
         return encoded / 12.92;
     double base = (encoded + 0.055) / 1.055;
@@ -38,20 +42,23 @@ static double srgb_inverse(double encoded) {
 }
 
 /* The smallest positive float that is not below x. */
-static float round_up(double x) {
+static float round_up(double x)
+{
     float rounded = (float)x;
     return (double)rounded < x ? bits_float(float_bits(rounded) + 1) : rounded;
 }
 
 /* The smallest float whose product with maxval rounds to i + 1 or more. The products are exact: a
  * float has 24 bits, and 2 maxval has 17. */
-static float linear_threshold(uint32_t i, uint32_t maxval) {
+static float linear_threshold(uint32_t i, uint32_t maxval)
+{
     double wanted = 2.0 * i + 1, scale = 2.0 * maxval;
     float nearest = (float)(wanted / scale);
     return nearest * scale < wanted ? bits_float(float_bits(nearest) + 1) : nearest;
 }
 
-lr_status lr_curve_create(lr_curve *curve, lr_transfer transfer, uint32_t maxval, lr_error *error) {
+lr_status lr_curve_create(lr_curve *curve, lr_transfer transfer, uint32_t maxval, lr_error *error)
+{
     *curve = (lr_curve){0};
     if (maxval < 1 || maxval > 65535)
         return lr_fail(error, LR_ERROR_ARGUMENT, "maxval is %u; expected 1 to 65535", maxval);
@@ -88,7 +95,8 @@ out_of_memory:
     return lr_fail(error, LR_ERROR_MEMORY, "out of memory for a transfer curve");
 }
 
-void lr_curve_free(lr_curve *curve) {
+void lr_curve_free(lr_curve *curve)
+{
     if (!curve)
         return;
     free(curve->thresholds);
@@ -96,7 +104,8 @@ void lr_curve_free(lr_curve *curve) {
     *curve = (lr_curve){0};
 }
 
-uint32_t lr_curve_encode(const lr_curve *curve, float linear) {
+uint32_t lr_curve_encode(const lr_curve *curve, float linear)
+{
     if (!(linear >= curve->thresholds[0])) /* also NaN */
         return 0;
     if (linear >= curve->thresholds[curve->maxval - 1])

@@ -8,7 +8,8 @@
 
 #define EXPOSURE_LIMIT 200.0f /* stops; float32 spans 277 */
 
-double image_exp2(double stops) {
+double image_exp2(double stops)
+{
     int whole = (int)stops;
     whole -= whole > stops;
     double x = stops - whole; /* 0 <= x < 1 */
@@ -27,11 +28,13 @@ double image_exp2(double stops) {
     return power * sum;
 }
 
-static float exposed(const image_encoder *encoder, float value) {
+static float exposed(const image_encoder *encoder, float value)
+{
     return encoder->scale == 1 ? value : (float)(value * encoder->scale);
 }
 
-void image_encode_row(const image_encoder *encoder, uint32_t row, unsigned char *out) {
+void image_encode_row(const image_encoder *encoder, uint32_t row, unsigned char *out)
+{
     size_t count = 3 * (size_t)encoder->picture->width;
     const float *in = encoder->picture->pixels + row * count;
     for (size_t i = 0; i < count; i++) {
@@ -45,7 +48,8 @@ void image_encode_row(const image_encoder *encoder, uint32_t row, unsigned char 
 /* Allocates a header and room for the raster behind it; *raster points there. */
 static lr_status begin_file(const image_encoder *encoder, const char *magic, const char *last_line,
                             size_t sample_size, unsigned char **bytes, size_t *size,
-                            unsigned char **raster, lr_error *error) {
+                            unsigned char **raster, lr_error *error)
+{
     const lr_picture *picture = encoder->picture;
     char header[64];
     int header_size = snprintf(header, sizeof header, "%s\n%u %u\n%s\n", magic, picture->width,
@@ -64,7 +68,8 @@ static lr_status begin_file(const image_encoder *encoder, const char *magic, con
 }
 
 static lr_status encode_ppm(const image_encoder *encoder, unsigned char **bytes, size_t *size,
-                            lr_error *error) {
+                            lr_error *error)
+{
     char maxval[16];
     unsigned char *raster;
     snprintf(maxval, sizeof maxval, "%u", encoder->curve.maxval);
@@ -80,7 +85,8 @@ static lr_status encode_ppm(const image_encoder *encoder, unsigned char **bytes,
 
 /* PFM puts the bottom row first, and a negative scale says little-endian. */
 static lr_status encode_pfm(const image_encoder *encoder, unsigned char **bytes, size_t *size,
-                            lr_error *error) {
+                            lr_error *error)
+{
     unsigned char *out;
     lr_status status = begin_file(encoder, "PF", "-1.0", 4, bytes, size, &out, error);
     if (status != LR_OK)
@@ -98,7 +104,8 @@ static lr_status encode_pfm(const image_encoder *encoder, unsigned char **bytes,
 }
 
 static lr_status check(const lr_picture *picture, const lr_encoding *encoding, uint32_t maxval,
-                       lr_error *error) {
+                       lr_error *error)
+{
     if (!picture->pixels || picture->width == 0 || picture->height == 0)
         return lr_fail(error, LR_ERROR_ARGUMENT, "the picture is empty (%u x %u pixels)",
                        picture->width, picture->height);
@@ -116,7 +123,8 @@ static lr_status check(const lr_picture *picture, const lr_encoding *encoding, u
 }
 
 lr_status lr_picture_encode(const lr_picture *picture, const lr_encoding *encoding,
-                            unsigned char **bytes, size_t *size, lr_error *error) {
+                            unsigned char **bytes, size_t *size, lr_error *error)
+{
     *bytes = NULL;
     *size = 0;
     uint32_t maxval = encoding->maxval ? encoding->maxval : 255;

@@ -6,19 +6,22 @@
 
 #include "base/file.h"
 
-void lr_picture_free(lr_picture *picture) {
+void lr_picture_free(lr_picture *picture)
+{
     if (!picture)
         return;
     free(picture->pixels);
     *picture = (lr_picture){0};
 }
 
-static void put_little_endian(unsigned char *out, uint32_t value) {
+static void put_little_endian(unsigned char *out, uint32_t value)
+{
     for (int i = 0; i < 4; i++)
         out[i] = (unsigned char)(value >> 8 * i);
 }
 
-void lr_picture_hash(const lr_picture *picture, char hash[65]) {
+void lr_picture_hash(const lr_picture *picture, char hash[65])
+{
     SHA2_CTX context;
     unsigned char block[4096], digest[SHA256_DIGEST_LENGTH];
     SHA256Init(&context);
@@ -46,7 +49,8 @@ void lr_picture_hash(const lr_picture *picture, char hash[65]) {
 }
 
 /* Plain ASCII, unlike strcasecmp, which asks the locale. */
-static bool ends_with(const char *path, const char *ending) {
+static bool ends_with(const char *path, const char *ending)
+{
     size_t length = strlen(path), ending_length = strlen(ending);
     if (length < ending_length)
         return false;
@@ -57,7 +61,8 @@ static bool ends_with(const char *path, const char *ending) {
     return true;
 }
 
-bool lr_format_from_path(const char *path, lr_format *format) {
+bool lr_format_from_path(const char *path, lr_format *format)
+{
     static const struct {
         const char *ending;
         lr_format format;
@@ -75,7 +80,8 @@ bool lr_format_from_path(const char *path, lr_format *format) {
 }
 
 lr_status lr_picture_write(const lr_picture *picture, const char *path, const lr_encoding *encoding,
-                           lr_error *error) {
+                           lr_error *error)
+{
     unsigned char *bytes;
     size_t size;
     lr_status status = lr_picture_encode(picture, encoding, &bytes, &size, error);

@@ -15,19 +15,22 @@ typedef struct png_output {
     char reason[128];
 } png_output;
 
-static void on_error(png_structp png, png_const_charp message) {
+static void on_error(png_structp png, png_const_charp message)
+{
     png_output *output = png_get_error_ptr(png);
     strncpy(output->reason, message, sizeof output->reason - 1);
     png_longjmp(png, 1);
 }
 
 /* libpng prints warnings unless it is given somewhere else to put them. */
-static void on_warning(png_structp png, png_const_charp message) {
+static void on_warning(png_structp png, png_const_charp message)
+{
     (void)png;
     (void)message;
 }
 
-static void on_data(png_structp png, png_bytep data, size_t size) {
+static void on_data(png_structp png, png_bytep data, size_t size)
+{
     png_output *output = png_get_io_ptr(png);
     if (size > output->capacity - output->size) {
         size_t capacity = output->capacity ? output->capacity : 65536;
@@ -46,11 +49,13 @@ static void on_data(png_structp png, png_bytep data, size_t size) {
     output->size += size;
 }
 
-static void on_flush(png_structp png) {
+static void on_flush(png_structp png)
+{
     (void)png;
 }
 
-static bool encode(png_output *output) {
+static bool encode(png_output *output)
+{
     const image_encoder *encoder = output->encoder;
     const lr_picture *picture = encoder->picture;
     if (setjmp(png_jmpbuf(output->png)))
@@ -76,7 +81,8 @@ static bool encode(png_output *output) {
 }
 
 lr_status image_encode_png(const image_encoder *encoder, unsigned char **bytes, size_t *size,
-                           lr_error *error) {
+                           lr_error *error)
+{
     png_output output = {.encoder = encoder, .reason = "out of memory"};
     const lr_picture *picture = encoder->picture;
     bool done = false;

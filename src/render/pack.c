@@ -97,9 +97,9 @@ static lr_status pack_materials(const lr_scene *scene, lr_packed_scene *packed, 
 /* The light of a scene that names none: from above and to the left of the camera. */
 static lr_light default_light(lr_vec3 forward, lr_vec3 right, lr_vec3 up)
 {
-    lr_vec3 direction = lr_vec3_add(lr_vec3_scale(forward, 0.55),
-                                    lr_vec3_sub(lr_vec3_scale(right, 0.35),
-                                                lr_vec3_scale(up, 0.75)));
+    lr_vec3 direction =
+        lr_vec3_add(lr_vec3_scale(forward, 0.55),
+                    lr_vec3_sub(lr_vec3_scale(right, 0.35), lr_vec3_scale(up, 0.75)));
     return (lr_light){.kind = LR_LIGHT_DIRECTIONAL,
                       .color = {1, 1, 1},
                       .intensity = 0.9,
@@ -145,8 +145,8 @@ static lr_status pack_lights(const lr_scene *scene, const lr_light *fallback,
     return LR_OK;
 }
 
-lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings,
-                        lr_packed_scene *packed, lr_error *error)
+lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_packed_scene *packed,
+                        lr_error *error)
 {
     *packed = (lr_packed_scene){0};
     const lr_camera *camera = settings->camera;

@@ -22,8 +22,8 @@ typedef struct lr_packed_scene {
     uint32_t constants[LR_SPEC_COUNT]; /* but for LR_SPEC_TEXEL_LOADS and LR_SPEC_PRIMARY */
 } lr_packed_scene;
 
-lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings,
-                        lr_packed_scene *packed, lr_error *error);
+lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_packed_scene *packed,
+                        lr_error *error);
 void lr_packed_scene_free(lr_packed_scene *packed);
 
 /* Appends `rows` rows from `record`; returns the index of the first, or UINT32_MAX when memory is

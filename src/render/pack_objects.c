@@ -74,7 +74,8 @@ static vec4 pack_row(const double row[4], double scale)
                   (float)(row[3] * scale)};
 }
 
-/* A solid whose own space is reached from object space by `canonical`. False when it is too thin. */
+/* A solid whose own space is reached from object space by `canonical`. False when it is too thin.
+ */
 static bool pack_solid(const lr_object *object, lr_transform canonical, list_kind list,
                        primitive *out)
 {
@@ -115,9 +116,8 @@ static bool pack_sphere(const lr_object *object, primitive *out)
     out->list = SPHERES;
     out->rows = sizeof out->record.sphere / 16;
     out->encloses = true;
-    out->record.sphere = (struct gpu_sphere){.center = lr_pack_vec3(center),
-                                             .inv_radius = (float)(1 / radius),
-                                             .radius = (float)radius};
+    out->record.sphere = (struct gpu_sphere){
+        .center = lr_pack_vec3(center), .inv_radius = (float)(1 / radius), .radius = (float)radius};
     return true;
 }
 
@@ -305,8 +305,8 @@ static const lr_material *material_of(const lr_scene *scene, uint32_t object)
 
 /* Packs the table of media and gives the ranks of the objects' media in ranks[]. */
 static lr_status pack_media(const lr_scene *scene, const lr_settings *settings,
-                            const primitive *primitives, uint32_t *ranks,
-                            lr_packed_scene *packed, lr_error *error)
+                            const primitive *primitives, uint32_t *ranks, lr_packed_scene *packed,
+                            lr_error *error)
 {
     medium_order *order = lr_alloc(scene->object_count, sizeof *order);
     if (!order)
@@ -354,8 +354,8 @@ static uint32_t shadow_depth(double transmit)
     return depth < LR_SHADOW_OPAQUE ? (uint32_t)floor(depth + 0.5) : LR_SHADOW_OPAQUE;
 }
 
-static bool pack_object_record(const lr_scene *scene, uint32_t index, uint32_t flags,
-                               uint32_t rank, lr_packed_scene *packed)
+static bool pack_object_record(const lr_scene *scene, uint32_t index, uint32_t flags, uint32_t rank,
+                               lr_packed_scene *packed)
 {
     const lr_object *object = &scene->objects[index];
     lr_transform inverse = inverse_of(&object->to_world);

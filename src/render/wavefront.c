@@ -45,9 +45,8 @@ static void plan(lr_wavefront *w, const lr_render_options *options)
     if (options->tile_size)
         w->tile_size = at_least(at_most(options->tile_size, 1024), 1);
     w->chunk_rays = at_least(chunk, w->tile_size * w->tile_size);
-    uint32_t lights = at_least(at_most(TESTS_PER_DISPATCH / cost / w->chunk_rays,
-                                       LOOPS_PER_INVOCATION / cost),
-                               1);
+    uint32_t lights = at_least(
+        at_most(TESTS_PER_DISPATCH / cost / w->chunk_rays, LOOPS_PER_INVOCATION / cost), 1);
     w->lights_at_once = at_most(lights, at_least(w->scene->light_count, 1));
 }
 
@@ -99,8 +98,8 @@ static lr_status create_buffers(lr_wavefront *w, lr_error *error)
         status = lr_buffer_create(w->device, wanted[i].kind, wanted[i].size, wanted[i].what,
                                   wanted[i].buffer, error);
     if (!status)
-        status = lr_buffer_upload(w->device, &w->frame, &w->scene->frame, sizeof w->scene->frame,
-                                  error);
+        status =
+            lr_buffer_upload(w->device, &w->frame, &w->scene->frame, sizeof w->scene->frame, error);
     if (!status)
         status = lr_buffer_upload(w->device, &w->rows, w->scene->rows,
                                   16 * (size_t)w->scene->row_count, error);
@@ -242,8 +241,7 @@ static uint32_t light_dispatches(const lr_wavefront *w)
 
 /* Adds a pass's counts to the statistics, after checking that no kernel stopped half-way and no
  * queue overflowed: drivers have done either without a word. */
-static lr_status take_counts(lr_wavefront *w, uint32_t traced, uint32_t generation,
-                             lr_error *error)
+static lr_status take_counts(lr_wavefront *w, uint32_t traced, uint32_t generation, lr_error *error)
 {
     const struct gpu_counters *c = w->counters_host.mapped;
     bool scatters = w->scene->constants[LR_SPEC_SCATTER];
@@ -331,8 +329,7 @@ static lr_status drain_queues(lr_wavefront *w, lr_pass_done done, void *user, do
     return LR_OK;
 }
 
-static lr_status read_film(lr_wavefront *w, const lr_tile *tile, uint32_t samples,
-                           lr_error *error)
+static lr_status read_film(lr_wavefront *w, const lr_tile *tile, uint32_t samples, lr_error *error)
 {
     double start = lr_now();
     uint32_t pixels = tile->width * tile->height;
@@ -383,7 +380,6 @@ lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_p
     if (!status)
         status = read_film(w, tile, samples, error);
     *film = w->film_host.mapped;
-    w->stats->trace_seconds +=
-        lr_now() - start - (w->stats->read_back_seconds - read_before);
+    w->stats->trace_seconds += lr_now() - start - (w->stats->read_back_seconds - read_before);
     return status;
 }

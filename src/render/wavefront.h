@@ -1,6 +1,7 @@
-/* The ray tree as queues: a pass traces one chunk of rays, lights the hits into the integer film and
- * puts their children into the next generation's queue. The deepest queue that holds rays is always
- * taken first, so each queue needs room for the children of one chunk only, whatever the depth. */
+/* The ray tree as queues: a pass traces one chunk of rays, lights the hits into the integer film
+ * and puts their children into the next generation's queue. The deepest queue that holds rays is
+ * always taken first, so each queue needs room for the children of one chunk only, whatever the
+ * depth. */
 #ifndef LR_RENDER_WAVEFRONT_H
 #define LR_RENDER_WAVEFRONT_H
 
@@ -11,7 +12,7 @@
 #define LR_GENERATIONS_MAX 322
 
 typedef struct lr_queue {
-    lr_buffer rays; /* made when the generation is first reached */
+    lr_buffer rays;      /* made when the generation is first reached */
     VkDescriptorSet set; /* traces this queue into the next */
     uint32_t count;
 } lr_queue;
@@ -22,7 +23,8 @@ typedef struct lr_wavefront {
     lr_layout layout;
     VkPipeline primary, trace, scatter, light;
     lr_buffer frame, rows, film, film_host, counters, counters_host, hits, lit, none;
-    lr_queue queues[LR_GENERATIONS_MAX]; /* queues[0] stays empty: camera rays are made on the fly */
+    lr_queue
+        queues[LR_GENERATIONS_MAX]; /* queues[0] stays empty: camera rays are made on the fly */
     uint32_t tile_size, chunk_rays, lights_at_once;
     lr_render_stats *stats;
 } lr_wavefront;

@@ -3,29 +3,34 @@
 
 #include <math.h>
 
-bool lr_parallel(lr_vec3 a, lr_vec3 b) {
+bool lr_parallel(lr_vec3 a, lr_vec3 b)
+{
     /* Written so that NaN counts as parallel. */
     lr_vec3 sine = lr_vec3_cross(lr_vec3_normalize(a), lr_vec3_normalize(b));
     return !(lr_vec3_length(sine) > 1e-6);
 }
 
-static bool fail_at(lr_reader *reader, const lr_node *node, const char *message) {
+static bool fail_at(lr_reader *reader, const lr_node *node, const char *message)
+{
     lr_report_add(reader->report, node->offset, "%s", message);
     return false;
 }
 
 static const lr_node *node_of(const lr_given *given, const lr_record *record, const char *name,
-                              const lr_node *at) {
+                              const lr_node *at)
+{
     const lr_node *node = lr_given_value(given, record, name);
     return node ? node : at;
 }
 
-static bool too_short(lr_vec3 v) {
+static bool too_short(lr_vec3 v)
+{
     return !(lr_vec3_length(v) >= LR_LENGTH_MIN);
 }
 
 bool lr_check_shape(lr_reader *reader, const lr_object *object, const lr_record *record,
-                    const lr_given *given, const lr_node *at) {
+                    const lr_given *given, const lr_node *at)
+{
     switch (object->kind) {
     case LR_BOX: {
         const double *low = &object->box.min.x, *high = &object->box.max.x;
@@ -79,7 +84,8 @@ typedef struct extent {
     int edge_count;
 } extent;
 
-static extent extent_of(const lr_object *object) {
+static extent extent_of(const lr_object *object)
+{
     extent e = {.edge_count = 3};
     switch (object->kind) {
     case LR_SPHERE: {
@@ -127,13 +133,15 @@ static extent extent_of(const lr_object *object) {
     return e;
 }
 
-static bool is_far(lr_vec3 p) {
+static bool is_far(lr_vec3 p)
+{
     /* Written so that NaN is far. */
     return !(fabs(p.x) <= LR_COORDINATE_MAX && fabs(p.y) <= LR_COORDINATE_MAX &&
              fabs(p.z) <= LR_COORDINATE_MAX);
 }
 
-bool lr_check_extent(lr_reader *reader, const lr_object *object, const lr_node *at) {
+bool lr_check_extent(lr_reader *reader, const lr_object *object, const lr_node *at)
+{
     const lr_transform *t = &object->to_world;
     extent e = extent_of(object);
     lr_vec3 center = lr_transform_point(t, e.center);

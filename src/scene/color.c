@@ -160,7 +160,8 @@ static const struct {
 
 #define CSS_COUNT (sizeof css_colors / sizeof css_colors[0])
 
-double lr_srgb_to_linear(unsigned value) {
+double lr_srgb_to_linear(unsigned value)
+{
     double c = value / 255.0;
     if (c <= 0.04045)
         return c / 12.92;
@@ -177,12 +178,14 @@ double lr_srgb_to_linear(unsigned value) {
     return square * root;
 }
 
-static lr_color from_bytes(uint32_t rgb) {
+static lr_color from_bytes(uint32_t rgb)
+{
     return (lr_color){lr_srgb_to_linear(rgb >> 16), lr_srgb_to_linear(rgb >> 8 & 255),
                       lr_srgb_to_linear(rgb & 255)};
 }
 
-static bool from_hex(const char *digits, size_t count, lr_color *color) {
+static bool from_hex(const char *digits, size_t count, lr_color *color)
+{
     if (count != 3 && count != 6)
         return false;
     uint32_t rgb = 0;
@@ -197,7 +200,8 @@ static bool from_hex(const char *digits, size_t count, lr_color *color) {
     return true;
 }
 
-bool lr_color_from_text(const char *text, size_t length, lr_color *color) {
+bool lr_color_from_text(const char *text, size_t length, lr_color *color)
+{
     if (length > 0 && text[0] == '#')
         return from_hex(text + 1, length - 1, color);
     for (size_t i = 0; i < CSS_COUNT; i++) {
@@ -210,7 +214,8 @@ bool lr_color_from_text(const char *text, size_t length, lr_color *color) {
     return false;
 }
 
-void lr_color_offer_names(lr_nearest *nearest) {
+void lr_color_offer_names(lr_nearest *nearest)
+{
     for (size_t i = 0; i < CSS_COUNT; i++)
         lr_nearest_offer(nearest, css_colors[i].name);
 }

@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
-void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info) {
+void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info)
+{
     *info = (lr_scene_info){
         .objects = scene->object_count,
         .lights = scene->light_count + scene->default_light,

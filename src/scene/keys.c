@@ -249,9 +249,13 @@ const uint32_t lr_light_record_count = COUNT(lr_light_records);
          DEFAULT(1), OBJECT(shadow),   .doc = "Whether it casts shadows."},                        \
         TRANSFORM
 #define POINT(name_, member_, doc_)                                                                \
-    { name_, LR_FIELD_VECTOR, LR_REQUIRED, COORDINATE, OBJECT(member_), .doc = (doc_) }
+    {                                                                                              \
+        name_, LR_FIELD_VECTOR, LR_REQUIRED, COORDINATE, OBJECT(member_), .doc = (doc_)            \
+    }
 #define OPEN                                                                                       \
-    { "open", LR_FIELD_BOOLEAN, 0, DEFAULT(0), OBJECT(open), .doc = "Without the end caps." }
+    {                                                                                              \
+        "open", LR_FIELD_BOOLEAN, 0, DEFAULT(0), OBJECT(open), .doc = "Without the end caps."      \
+    }
 
 static const lr_field sphere_fields[] = {
     {"center", LR_FIELD_VECTOR, 0, COORDINATE, DEFAULT(0, 0, 0), OBJECT(sphere.center),

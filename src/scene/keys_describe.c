@@ -5,7 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-const lr_record *lr_record_at(uint32_t index) {
+const lr_record *lr_record_at(uint32_t index)
+{
     static const lr_record *const singles[] = {
         &lr_scene_record,      &lr_camera_record,   &lr_image_record,    &lr_fog_record,
         &lr_background_record, &lr_material_record, &lr_rotation_record, &lr_group_record,
@@ -23,7 +24,8 @@ const lr_record *lr_record_at(uint32_t index) {
     return index < lr_object_record_count ? &lr_object_records[index] : NULL;
 }
 
-const lr_field *lr_field_find(const lr_record *record, const char *name, size_t length) {
+const lr_field *lr_field_find(const lr_record *record, const char *name, size_t length)
+{
     for (uint32_t i = 0; i < record->count; i++)
         if (strlen(record->fields[i].name) == length &&
             memcmp(record->fields[i].name, name, length) == 0)
@@ -31,13 +33,15 @@ const lr_field *lr_field_find(const lr_record *record, const char *name, size_t 
     return NULL;
 }
 
-uint32_t lr_field_index(const lr_record *record, const char *name) {
+uint32_t lr_field_index(const lr_record *record, const char *name)
+{
     const lr_field *field = lr_field_find(record, name, strlen(name));
     assert(field);
     return (uint32_t)(field - record->fields);
 }
 
-bool lr_key_is_known(const char *name) {
+bool lr_key_is_known(const char *name)
+{
     const lr_record *record;
     for (uint32_t i = 0; (record = lr_record_at(i)) != NULL; i++)
         if (strcmp(record->name, name) == 0 || lr_field_find(record, name, strlen(name)))
@@ -45,7 +49,8 @@ bool lr_key_is_known(const char *name) {
     return false;
 }
 
-const char *lr_show_number(double value, char buffer[32]) {
+const char *lr_show_number(double value, char buffer[32])
+{
     snprintf(buffer, 32, "%.10g", value);
     char *plus = strchr(buffer, '+'); /* 1e+12 */
     if (plus)
@@ -54,7 +59,8 @@ const char *lr_show_number(double value, char buffer[32]) {
 }
 
 /* "from 0 to 1", "above 0 and below 180". */
-static void describe_range(const lr_field *field, char *out, size_t size) {
+static void describe_range(const lr_field *field, char *out, size_t size)
+{
     char low[32], high[32];
     lr_show_number(field->minimum, low);
     lr_show_number(field->maximum, high);
@@ -65,7 +71,8 @@ static void describe_range(const lr_field *field, char *out, size_t size) {
         snprintf(out, size, "from %s to %s", low, high);
 }
 
-const char *lr_field_expected(const lr_field *field, char buffer[LR_EXPECTED_MAX]) {
+const char *lr_field_expected(const lr_field *field, char buffer[LR_EXPECTED_MAX])
+{
     char range[96];
     describe_range(field, range, sizeof range);
     size_t size = LR_EXPECTED_MAX;
@@ -131,7 +138,8 @@ const char *lr_field_expected(const lr_field *field, char buffer[LR_EXPECTED_MAX
     return buffer;
 }
 
-const char *lr_field_default(const lr_field *field, char buffer[LR_EXPECTED_MAX]) {
+const char *lr_field_default(const lr_field *field, char buffer[LR_EXPECTED_MAX])
+{
     const double *d = field->fallback;
     buffer[0] = '\0';
     if (field->flags & LR_REQUIRED)

@@ -6,14 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-static uint32_t hash(const char *text, size_t length) {
+static uint32_t hash(const char *text, size_t length)
+{
     uint32_t value = 2166136261u; /* FNV-1a */
     for (size_t i = 0; i < length; i++)
         value = (value ^ (unsigned char)text[i]) * 16777619u;
     return value;
 }
 
-static lr_name *find(const lr_names *names, const char *text, size_t length) {
+static lr_name *find(const lr_names *names, const char *text, size_t length)
+{
     uint32_t mask = names->capacity - 1;
     uint32_t slot = hash(text, length) & mask;
     for (;; slot = (slot + 1) & mask) {
@@ -23,7 +25,8 @@ static lr_name *find(const lr_names *names, const char *text, size_t length) {
     }
 }
 
-bool lr_names_put(lr_names *names, const char *text, size_t length, uint32_t value) {
+bool lr_names_put(lr_names *names, const char *text, size_t length, uint32_t value)
+{
     if (names->count * 2 >= names->capacity) {
         lr_names grown = {.capacity = names->capacity ? names->capacity * 2 : 32};
         grown.slots = lr_alloc(grown.capacity, sizeof *grown.slots);
@@ -45,7 +48,8 @@ bool lr_names_put(lr_names *names, const char *text, size_t length, uint32_t val
     return true;
 }
 
-bool lr_names_get(const lr_names *names, const char *text, size_t length, uint32_t *value) {
+bool lr_names_get(const lr_names *names, const char *text, size_t length, uint32_t *value)
+{
     if (names->capacity == 0)
         return false;
     const lr_name *name = find(names, text, length);
@@ -55,20 +59,23 @@ bool lr_names_get(const lr_names *names, const char *text, size_t length, uint32
     return true;
 }
 
-void lr_names_free(lr_names *names) {
+void lr_names_free(lr_names *names)
+{
     free(names->slots);
     *names = (lr_names){0};
 }
 
 #define COMPARED_MAX 32
 
-static uint32_t least(uint32_t a, uint32_t b) {
+static uint32_t least(uint32_t a, uint32_t b)
+{
     return a < b ? a : b;
 }
 
 /* Optimal string alignment distance without regard to case: insertions, deletions, substitutions
  * and swaps of neighbours count one each. */
-static uint32_t edit_distance(const char *a, size_t a_length, const char *b, size_t b_length) {
+static uint32_t edit_distance(const char *a, size_t a_length, const char *b, size_t b_length)
+{
     uint32_t rows[3][COMPARED_MAX + 1];
     uint32_t *before = rows[0], *last = rows[1], *row = rows[2];
     for (uint32_t j = 0; j <= b_length; j++)
@@ -91,7 +98,8 @@ static uint32_t edit_distance(const char *a, size_t a_length, const char *b, siz
     return last[b_length];
 }
 
-void lr_nearest_offer(lr_nearest *nearest, const char *candidate) {
+void lr_nearest_offer(lr_nearest *nearest, const char *candidate)
+{
     size_t length = strlen(candidate);
     if (nearest->length == 0 || nearest->length > COMPARED_MAX || length > COMPARED_MAX)
         return;

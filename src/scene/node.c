@@ -16,7 +16,8 @@ struct lr_chunk {
     max_align_t data[];
 };
 
-static void *tree_alloc(lr_tree *tree, size_t size) {
+static void *tree_alloc(lr_tree *tree, size_t size)
+{
     size = (size + sizeof(max_align_t) - 1) / sizeof(max_align_t) * sizeof(max_align_t);
     lr_chunk *chunk = tree->chunks;
     if (!chunk || chunk->size - chunk->used < size) {
@@ -32,7 +33,8 @@ static void *tree_alloc(lr_tree *tree, size_t size) {
     return memory;
 }
 
-void lr_tree_free(lr_tree *tree) {
+void lr_tree_free(lr_tree *tree)
+{
     while (tree->chunks) {
         lr_chunk *next = tree->chunks->next;
         free(tree->chunks);
@@ -64,16 +66,19 @@ typedef struct builder {
     bool stopped;
 } builder;
 
-static void stop(builder *b) {
+static void stop(builder *b)
+{
     b->stopped = true;
 }
 
-static void out_of_memory(builder *b) {
+static void out_of_memory(builder *b)
+{
     b->report->no_memory = true;
     stop(b);
 }
 
-static lr_node *new_node(builder *b, lr_node_kind kind, const struct fy_mark *start) {
+static lr_node *new_node(builder *b, lr_node_kind kind, const struct fy_mark *start)
+{
     lr_node *node = tree_alloc(b->tree, sizeof *node);
     if (!node) {
         out_of_memory(b);
@@ -92,7 +97,8 @@ static lr_node *new_node(builder *b, lr_node_kind kind, const struct fy_mark *st
 }
 
 /* Lets the anchor's name mean the node from here on. */
-static void set_anchor(builder *b, const lr_node *node, const char *name, size_t length) {
+static void set_anchor(builder *b, const lr_node *node, const char *name, size_t length)
+{
     if (!name)
         return;
     if (!lr_array_reserve((void **)&b->anchored, b->anchored_count, &b->anchored_capacity,
@@ -104,7 +110,8 @@ static void set_anchor(builder *b, const lr_node *node, const char *name, size_t
     b->anchored[b->anchored_count++] = node;
 }
 
-static void push(builder *b, const lr_node *node) {
+static void push(builder *b, const lr_node *node)
+{
     if (b->depth == 0) {
         b->tree->root = node;
         return;
@@ -118,7 +125,8 @@ static void push(builder *b, const lr_node *node) {
 }
 
 /* The key that the next pushed node is the value of, NULL when it is none. */
-static const lr_node *waiting_key(const builder *b) {
+static const lr_node *waiting_key(const builder *b)
+{
     if (b->depth == 0)
         return NULL;
     const frame *top = &b->frames[b->depth - 1];
@@ -129,7 +137,8 @@ static const lr_node *waiting_key(const builder *b) {
 /* Walks the pieces of a token's text, copying them to `out` unless it is NULL. Returns their total
  * length. fy_token_get_text() of libfyaml 0.7.12 leaks for quoted text of more than ten pieces
  * ('''''''''''''''''''''''' is one); its iterator does not. */
-static size_t walk_text(struct fy_token *token, char *out, bool *failed) {
+static size_t walk_text(struct fy_token *token, char *out, bool *failed)
+{
     struct fy_token_iter *iterator = fy_token_iter_create(token);
     if (!iterator) {
         *failed = true;
@@ -148,7 +157,8 @@ static size_t walk_text(struct fy_token *token, char *out, bool *failed) {
     return length;
 }
 
-static const char *copy_text(builder *b, struct fy_token *token, size_t *length) {
+static const char *copy_text(builder *b, struct fy_token *token, size_t *length)
+{
     bool failed = false;
     *length = token ? walk_text(token, NULL, &failed) : 0;
     char *copy = failed ? NULL : tree_alloc(b->tree, *length + 1);
@@ -162,14 +172,16 @@ static const char *copy_text(builder *b, struct fy_token *token, size_t *length)
     return copy;
 }
 
-static bool is_null(const char *text) {
+static bool is_null(const char *text)
+{
     return !*text || !strcmp(text, "~") || !strcmp(text, "null") || !strcmp(text, "Null") ||
            !strcmp(text, "NULL");
 }
 
 /* An empty value has no position of its own: it gets its key's, or that of the dash or comma that
  * it stands behind. */
-static void place_empty(builder *b, lr_node *node) {
+static void place_empty(builder *b, lr_node *node)
+{
     const lr_node *key = waiting_key(b);
     if (key) {
         node->offset = key->offset;
@@ -193,8 +205,8 @@ static void place_empty(builder *b, lr_node *node) {
     node->offset = (uint32_t)offset;
 }
 
-static void add_scalar(builder *b, struct fy_event *event, const char *anchor,
-                       size_t anchor_length) {
+static void add_scalar(builder *b, struct fy_event *event, const char *anchor, size_t anchor_length)
+{
     struct fy_token *token = event->scalar.value;
     const struct fy_mark *start = token ? fy_token_start_mark(token) : NULL;
     lr_node *node = new_node(b, LR_NODE_PLAIN, start);
@@ -220,7 +232,8 @@ static void add_scalar(builder *b, struct fy_event *event, const char *anchor,
     set_anchor(b, node, anchor, anchor_length);
 }
 
-static void add_alias(builder *b, struct fy_event *event) {
+static void add_alias(builder *b, struct fy_event *event)
+{
     size_t length = 0;
     const char *name = copy_text(b, event->alias.anchor, &length);
     if (!name)
@@ -249,7 +262,8 @@ static void add_alias(builder *b, struct fy_event *event) {
 }
 
 static void open_frame(builder *b, lr_node_kind kind, struct fy_event *event, const char *anchor,
-                       size_t anchor_length) {
+                       size_t anchor_length)
+{
     lr_node *node = new_node(b, kind, fy_event_start_mark(event));
     if (!node)
         return;
@@ -264,7 +278,8 @@ static void open_frame(builder *b, lr_node_kind kind, struct fy_event *event, co
 
 /* Whether the pair belongs in the map; if not, why not is reported. */
 static bool check_key(builder *b, const lr_node *key, lr_names *seen, const lr_node **children,
-                      uint32_t index) {
+                      uint32_t index)
+{
     char shown[LR_SHOWN_MAX];
     if (key->kind == LR_NODE_LIST || key->kind == LR_NODE_MAP || key->kind == LR_NODE_EMPTY) {
         lr_report_add(b->report, key->offset, "this key is %s, expected a name",
@@ -289,7 +304,8 @@ static bool check_key(builder *b, const lr_node *key, lr_names *seen, const lr_n
     return true;
 }
 
-static void close_frame(builder *b) {
+static void close_frame(builder *b)
+{
     frame top = b->frames[--b->depth];
     lr_node *node = top.node;
     const lr_node **children = b->pending ? b->pending + top.first : NULL;
@@ -331,7 +347,8 @@ static void close_frame(builder *b) {
     set_anchor(b, node, top.anchor, top.anchor_length);
 }
 
-static void refuse_tag(builder *b, struct fy_event *event) {
+static void refuse_tag(builder *b, struct fy_event *event)
+{
     struct fy_token *tag = fy_event_get_tag_token(event);
     if (!tag)
         return;
@@ -340,7 +357,8 @@ static void refuse_tag(builder *b, struct fy_event *event) {
                   "tags (!name) are not part of the scene language; remove it");
 }
 
-static void take_event(builder *b, struct fy_event *event) {
+static void take_event(builder *b, struct fy_event *event)
+{
     const char *anchor = NULL;
     size_t anchor_length = 0;
     if (event->type == FYET_SCALAR || event->type == FYET_SEQUENCE_START ||
@@ -385,7 +403,8 @@ static void take_event(builder *b, struct fy_event *event) {
     }
 }
 
-static void report_syntax_error(lr_report *report, struct fy_diag *diag) {
+static void report_syntax_error(lr_report *report, struct fy_diag *diag)
+{
     void *iterator = NULL;
     const struct fy_diag_error *error = fy_diag_errors_iterate(diag, &iterator);
     while (error && error->type != FYET_ERROR)
@@ -396,7 +415,8 @@ static void report_syntax_error(lr_report *report, struct fy_diag *diag) {
         lr_syntax_error(report, 0, 0, "unreadable YAML");
 }
 
-void lr_tree_read(lr_tree *tree, lr_report *report) {
+void lr_tree_read(lr_tree *tree, lr_report *report)
+{
     *tree = (lr_tree){0};
     builder b = {.tree = tree, .report = report, .last_line = 1};
     struct fy_parser *parser = NULL;

@@ -44,11 +44,13 @@ typedef struct lr_tree {
 void lr_tree_read(lr_tree *tree, lr_report *report);
 void lr_tree_free(lr_tree *tree);
 
-static inline const lr_node *lr_map_key(const lr_node *map, uint32_t index) {
+static inline const lr_node *lr_map_key(const lr_node *map, uint32_t index)
+{
     return map->items[2 * index];
 }
 
-static inline const lr_node *lr_map_value(const lr_node *map, uint32_t index) {
+static inline const lr_node *lr_map_value(const lr_node *map, uint32_t index)
+{
     return map->items[2 * index + 1];
 }
 

@@ -4,7 +4,8 @@
 #include "base/memory.h"
 
 static bool complete_spot(lr_reader *reader, const lr_record *record, const lr_given *given,
-                          const lr_node *at, lr_light_draft *draft) {
+                          const lr_node *at, lr_light_draft *draft)
+{
     const lr_node *to = lr_given_value(given, record, "to");
     const lr_node *direction = lr_given_value(given, record, "direction");
     const lr_node *inner = lr_given_value(given, record, "inner");
@@ -38,7 +39,8 @@ static bool complete_spot(lr_reader *reader, const lr_record *record, const lr_g
     return true;
 }
 
-void lr_read_lights(lr_reader *reader, const lr_node *node) {
+void lr_read_lights(lr_reader *reader, const lr_node *node)
+{
     lr_scene *scene = reader->scene;
     if (node->kind != LR_NODE_LIST) {
         lr_report_type(reader, node, "lights",

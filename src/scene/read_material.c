@@ -10,7 +10,8 @@
 
 /* The colour of a material: a colour, or a mapping with a key that names a pattern. */
 static bool read_paint(lr_reader *reader, const lr_node *node, const lr_field *field,
-                       lr_pattern *pattern) {
+                       lr_pattern *pattern)
+{
     char expected[LR_EXPECTED_MAX];
     if (node->kind == LR_NODE_EMPTY) {
         lr_report_type(reader, node, field->name, lr_field_expected(field, expected));
@@ -61,13 +62,15 @@ static bool read_paint(lr_reader *reader, const lr_node *node, const lr_field *f
     return true;
 }
 
-static double greatest(lr_color c) {
+static double greatest(lr_color c)
+{
     return fmax(c.x, fmax(c.y, c.z));
 }
 
 /* Reads a material over its defaults. The result is usable even when errors were reported. */
 static void read_material(lr_reader *reader, const lr_node *node, const lr_node *at,
-                          lr_material *material) {
+                          lr_material *material)
+{
     const lr_record *record = &lr_material_record;
     lr_given given;
     *material = (lr_material){.line = at->line};
@@ -95,7 +98,8 @@ static void read_material(lr_reader *reader, const lr_node *node, const lr_node 
 }
 
 /* A new material at the end of the scene's; NULL after reporting. */
-static lr_material *add_material(lr_reader *reader, size_t offset, uint32_t *index) {
+static lr_material *add_material(lr_reader *reader, size_t offset, uint32_t *index)
+{
     lr_scene *scene = reader->scene;
     if (scene->material_count == LR_MATERIALS_MAX) {
         if (!reader->full)
@@ -112,7 +116,8 @@ static lr_material *add_material(lr_reader *reader, size_t offset, uint32_t *ind
     return &scene->materials[*index];
 }
 
-void lr_read_materials(lr_reader *reader, const lr_node *node) {
+void lr_read_materials(lr_reader *reader, const lr_node *node)
+{
     if (node->kind != LR_NODE_MAP) {
         lr_report_type(reader, node, "materials",
                        node->kind == LR_NODE_LIST
@@ -168,7 +173,8 @@ void lr_read_materials(lr_reader *reader, const lr_node *node) {
     }
 }
 
-static void report_unknown_material(lr_reader *reader, const lr_node *node) {
+static void report_unknown_material(lr_reader *reader, const lr_node *node)
+{
     lr_report *report = reader->report;
     if (!lr_report_has_room(report)) {
         report->dropped++;
@@ -189,7 +195,8 @@ static void report_unknown_material(lr_reader *reader, const lr_node *node) {
     lr_report_unknown(reader, node, message, &nearest);
 }
 
-uint32_t lr_read_material_use(lr_reader *reader, const lr_node *node) {
+uint32_t lr_read_material_use(lr_reader *reader, const lr_node *node)
+{
     uint32_t index;
     if (node->kind == LR_NODE_PLAIN || node->kind == LR_NODE_QUOTED) {
         if (lr_names_get(&reader->materials, node->text, node->count, &index))
@@ -209,7 +216,8 @@ uint32_t lr_read_material_use(lr_reader *reader, const lr_node *node) {
     return index;
 }
 
-uint32_t lr_default_material(lr_reader *reader) {
+uint32_t lr_default_material(lr_reader *reader)
+{
     if (reader->default_material == UINT32_MAX) {
         lr_node empty = {.kind = LR_NODE_MAP};
         uint32_t index;

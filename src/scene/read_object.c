@@ -20,7 +20,8 @@ static void read_list(lr_reader *reader, const lr_node *node, const surroundings
  * so extreme that it or its inverse overflows. */
 static bool compose(lr_reader *reader, const lr_object_draft *draft, const lr_record *record,
                     const lr_given *given, const lr_node *at, const surroundings *around,
-                    lr_transform *to_world, bool *transformed) {
+                    lr_transform *to_world, bool *transformed)
+{
     bool moved = lr_given_value(given, record, "scale") ||
                  lr_given_value(given, record, "rotate") ||
                  lr_given_value(given, record, "translate");
@@ -46,7 +47,8 @@ static bool compose(lr_reader *reader, const lr_object_draft *draft, const lr_re
 }
 
 static void read_group(lr_reader *reader, const lr_node *key, const lr_node *value,
-                       const surroundings *around) {
+                       const surroundings *around)
+{
     lr_object_draft draft = {0};
     lr_given given;
     const lr_record *record = &lr_group_record;
@@ -73,7 +75,8 @@ static void read_group(lr_reader *reader, const lr_node *key, const lr_node *val
     reader->nesting--;
 }
 
-static void add_object(lr_reader *reader, const lr_object *object, const lr_node *at) {
+static void add_object(lr_reader *reader, const lr_object *object, const lr_node *at)
+{
     lr_scene *scene = reader->scene;
     if (scene->object_count == LR_OBJECTS_MAX) {
         lr_report_add(reader->report, at->offset, "more than %d objects, groups counted out",
@@ -91,7 +94,8 @@ static void add_object(lr_reader *reader, const lr_object *object, const lr_node
 }
 
 static void read_object(lr_reader *reader, const lr_record *record, const lr_node *key,
-                        const lr_node *value, const surroundings *around) {
+                        const lr_node *value, const surroundings *around)
+{
     lr_object_draft draft = {0};
     lr_given given;
     bool valid = lr_read_record(reader, value, key, record, &draft, &given);
@@ -113,7 +117,8 @@ static void read_object(lr_reader *reader, const lr_record *record, const lr_nod
     add_object(reader, object, key);
 }
 
-static void read_list(lr_reader *reader, const lr_node *node, const surroundings *around) {
+static void read_list(lr_reader *reader, const lr_node *node, const surroundings *around)
+{
     if (node->kind != LR_NODE_LIST || node->count == 0) {
         lr_report_type(reader, node, "objects",
                        node->kind == LR_NODE_MAP
@@ -133,7 +138,8 @@ static void read_list(lr_reader *reader, const lr_node *node, const surroundings
     }
 }
 
-void lr_read_objects(lr_reader *reader, const lr_node *node) {
+void lr_read_objects(lr_reader *reader, const lr_node *node)
+{
     surroundings world = {.to_world = lr_transform_identity(), .material = UINT32_MAX};
     read_list(reader, node, &world);
 }

@@ -4,7 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-void lr_record_defaults(const lr_record *record, void *base) {
+void lr_record_defaults(const lr_record *record, void *base)
+{
     for (uint32_t i = 0; i < record->count; i++) {
         const lr_field *field = &record->fields[i];
         const double *d = field->fallback;
@@ -39,24 +40,28 @@ void lr_record_defaults(const lr_record *record, void *base) {
     }
 }
 
-const lr_node *lr_given_value(const lr_given *given, const lr_record *record, const char *name) {
+const lr_node *lr_given_value(const lr_given *given, const lr_record *record, const char *name)
+{
     return given->values[lr_field_index(record, name)];
 }
 
 /* Types up to LR_FIELD_ROTATE are stored by the reader of values; the enum says so. */
-static bool is_stored(const lr_field *field) {
+static bool is_stored(const lr_field *field)
+{
     return field->type <= LR_FIELD_ROTATE;
 }
 
 /* The field that `name:value` without a space means, NULL when it is no such thing. */
-static const lr_field *field_before_colon(const lr_record *record, const lr_node *key) {
+static const lr_field *field_before_colon(const lr_record *record, const lr_node *key)
+{
     const char *colon = memchr(key->text, ':', key->count);
     return colon ? lr_field_find(record, key->text, (size_t)(colon - key->text)) : NULL;
 }
 
 /* Whether an empty value above the key is a record that has the key: then the key was meant to be
  * inside and is not indented. */
-static const char *empty_owner(const lr_record *record, const lr_given *given, const lr_node *key) {
+static const char *empty_owner(const lr_record *record, const lr_given *given, const lr_node *key)
+{
     for (uint32_t i = 0; i < record->count; i++) {
         const lr_field *field = &record->fields[i];
         const lr_node *value = given->values[i];
@@ -69,7 +74,8 @@ static const char *empty_owner(const lr_record *record, const lr_given *given, c
 
 /* Returns the field that was probably meant, or NULL. */
 static const lr_field *report_unknown_key(lr_reader *reader, const lr_node *key,
-                                          const lr_record *record, const lr_given *given) {
+                                          const lr_record *record, const lr_given *given)
+{
     char shown[LR_SHOWN_MAX], message[1024];
     if (!lr_report_has_room(reader->report)) {
         reader->report->dropped++;
@@ -101,7 +107,8 @@ static const lr_field *report_unknown_key(lr_reader *reader, const lr_node *key,
 }
 
 bool lr_read_record(lr_reader *reader, const lr_node *node, const lr_node *at,
-                    const lr_record *record, void *base, lr_given *given) {
+                    const lr_record *record, void *base, lr_given *given)
+{
     *given = (lr_given){.valid = true};
     lr_record_defaults(record, base);
     if (node->kind != LR_NODE_MAP) {
@@ -141,7 +148,8 @@ bool lr_read_record(lr_reader *reader, const lr_node *node, const lr_node *at,
 /* ---- Items of a list of kinds -------------------------------------------------------------- */
 
 static const lr_record *find_kind(const lr_record *records, uint32_t count, const lr_record *extra,
-                                  const lr_node *key) {
+                                  const lr_node *key)
+{
     for (uint32_t i = 0; i < count; i++)
         if (strcmp(records[i].name, key->text) == 0)
             return &records[i];
@@ -149,7 +157,8 @@ static const lr_record *find_kind(const lr_record *records, uint32_t count, cons
 }
 
 static void report_unknown_kind(lr_reader *reader, const lr_node *key, const char *what,
-                                const lr_record *records, uint32_t count, const lr_record *extra) {
+                                const lr_record *records, uint32_t count, const lr_record *extra)
+{
     char shown[LR_SHOWN_MAX], message[1024];
     lr_nearest nearest = {.text = key->text, .length = key->count};
     int used = snprintf(message, sizeof message, "unknown %s \"%s\"", what,
@@ -170,7 +179,8 @@ static void report_unknown_kind(lr_reader *reader, const lr_node *key, const cha
  * own value is empty because its keys stand there. */
 static bool report_neighbours(lr_reader *reader, const lr_node *item, uint32_t kind_index,
                               const char *what, const lr_record *record, const lr_record *records,
-                              uint32_t count, const lr_record *extra) {
+                              uint32_t count, const lr_record *extra)
+{
     const lr_node *value = lr_map_value(item, kind_index);
     for (uint32_t i = 0; i < item->count; i++) {
         const lr_node *key = lr_map_key(item, i);
@@ -203,7 +213,8 @@ static bool report_neighbours(lr_reader *reader, const lr_node *item, uint32_t k
 
 const lr_record *lr_read_kind(lr_reader *reader, const lr_node *item, const char *what,
                               const lr_record *records, uint32_t count, const lr_record *extra,
-                              const lr_node **key, const lr_node **value) {
+                              const lr_node **key, const lr_node **value)
+{
     char expected[LR_EXPECTED_MAX];
     snprintf(expected, sizeof expected, "a mapping such as `%s: {...}`", records[0].name);
     if (item->kind == LR_NODE_PLAIN && find_kind(records, count, extra, item))

@@ -12,7 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *lr_node_describe(const lr_node *node, char buffer[LR_SHOWN_MAX + 32]) {
+const char *lr_node_describe(const lr_node *node, char buffer[LR_SHOWN_MAX + 32])
+{
     char shown[LR_SHOWN_MAX];
     switch (node->kind) {
     case LR_NODE_EMPTY:
@@ -36,7 +37,8 @@ const char *lr_node_describe(const lr_node *node, char buffer[LR_SHOWN_MAX + 32]
 }
 
 /* `radius:1` as a value: text with a known key before the colon. */
-static bool is_missing_space(const lr_node *node) {
+static bool is_missing_space(const lr_node *node)
+{
     const char *colon = node->kind == LR_NODE_PLAIN ? strchr(node->text, ':') : NULL;
     char word[32];
     if (!colon || !colon[1] || (size_t)(colon - node->text) >= sizeof word)
@@ -46,8 +48,8 @@ static bool is_missing_space(const lr_node *node) {
     return lr_key_is_known(word);
 }
 
-void lr_report_type(lr_reader *reader, const lr_node *node, const char *what,
-                    const char *expected) {
+void lr_report_type(lr_reader *reader, const lr_node *node, const char *what, const char *expected)
+{
     lr_report *report = reader->report;
     if (!lr_report_has_room(report)) {
         report->dropped++;
@@ -72,7 +74,8 @@ void lr_report_type(lr_reader *reader, const lr_node *node, const char *what,
 }
 
 void lr_report_unknown(lr_reader *reader, const lr_node *node, const char *message,
-                       const lr_nearest *nearest) {
+                       const lr_nearest *nearest)
+{
     if (nearest->best)
         lr_report_add(reader->report, node->offset, "%s; did you mean \"%s\"?", message,
                       nearest->best);
@@ -84,12 +87,14 @@ void lr_report_unknown(lr_reader *reader, const lr_node *node, const char *messa
 
 typedef enum number_form { NOT_A_NUMBER, DECIMAL, OCTAL, HEXADECIMAL, NOT_FINITE } number_form;
 
-static size_t count_digits(const char *text) {
+static size_t count_digits(const char *text)
+{
     return strspn(text, "0123456789");
 }
 
 /* The form that the YAML 1.2 core schema gives the text. */
-static number_form classify(const char *text) {
+static number_form classify(const char *text)
+{
     if (strncmp(text, "0o", 2) == 0 && text[2])
         return strspn(text + 2, "01234567") == strlen(text + 2) ? OCTAL : NOT_A_NUMBER;
     if (strncmp(text, "0x", 2) == 0 && text[2])
@@ -121,7 +126,8 @@ static number_form classify(const char *text) {
 #define NUMBER_TEXT_MAX 256
 
 /* The number a plain text is; false when it is none. An overflow gives infinity. */
-static bool parse_number(const lr_reader *reader, const lr_node *node, double *value) {
+static bool parse_number(const lr_reader *reader, const lr_node *node, double *value)
+{
     if (node->count > NUMBER_TEXT_MAX || strlen(node->text) != node->count)
         return false;
     number_form form = classify(node->text);
@@ -142,7 +148,8 @@ static bool parse_number(const lr_reader *reader, const lr_node *node, double *v
 }
 
 /* Why a text that is meant as a number is none, when that is plain; else NULL. */
-static const char *number_advice(const lr_reader *reader, const lr_node *node) {
+static const char *number_advice(const lr_reader *reader, const lr_node *node)
+{
     double value;
     if (node->kind == LR_NODE_QUOTED)
         return parse_number(reader, node, &value) ? "remove the quotes" : NULL;
@@ -166,7 +173,8 @@ static const char *number_advice(const lr_reader *reader, const lr_node *node) {
 }
 
 bool lr_read_number(lr_reader *reader, const lr_node *node, const lr_field *field, const char *what,
-                    double *value) {
+                    double *value)
+{
     char expected[LR_EXPECTED_MAX], described[LR_SHOWN_MAX + 32];
     lr_field scalar = *field; /* a component of a vector or colour expects a number */
     if (scalar.type != LR_FIELD_INTEGER)
@@ -204,8 +212,8 @@ bool lr_read_number(lr_reader *reader, const lr_node *node, const lr_field *fiel
     return true;
 }
 
-static bool read_boolean(lr_reader *reader, const lr_node *node, const lr_field *field,
-                         bool *value) {
+static bool read_boolean(lr_reader *reader, const lr_node *node, const lr_field *field, bool *value)
+{
     static const char *const words[] = {"true", "True", "TRUE", "false", "False", "FALSE"};
     if (node->kind == LR_NODE_PLAIN)
         for (int i = 0; i < 6; i++)
@@ -227,7 +235,8 @@ static bool read_boolean(lr_reader *reader, const lr_node *node, const lr_field 
 }
 
 static bool read_choice(lr_reader *reader, const lr_node *node, const lr_field *field,
-                        uint32_t *value) {
+                        uint32_t *value)
+{
     char expected[LR_EXPECTED_MAX];
     lr_field_expected(field, expected);
     if (node->kind == LR_NODE_PLAIN || node->kind == LR_NODE_QUOTED) {
@@ -251,7 +260,8 @@ static bool read_choice(lr_reader *reader, const lr_node *node, const lr_field *
 
 /* Three numbers, named what.x or what[0] in messages by their letter. */
 static bool read_triple(lr_reader *reader, const lr_node *node, const lr_field *field,
-                        const char *what, const char *letters, lr_vec3 *vector) {
+                        const char *what, const char *letters, lr_vec3 *vector)
+{
     char expected[LR_EXPECTED_MAX];
     if (node->kind != LR_NODE_LIST || node->count != 3) {
         lr_report_type(reader, node, what, lr_field_expected(field, expected));
@@ -270,7 +280,8 @@ static bool read_triple(lr_reader *reader, const lr_node *node, const lr_field *
 }
 
 static bool read_vector(lr_reader *reader, const lr_node *node, const lr_field *field,
-                        lr_vec3 *vector) {
+                        lr_vec3 *vector)
+{
     lr_vec3 read;
     if (!read_triple(reader, node, field, field->name, "xyz", &read))
         return false;
@@ -285,7 +296,8 @@ static bool read_vector(lr_reader *reader, const lr_node *node, const lr_field *
 }
 
 static bool read_scale(lr_reader *reader, const lr_node *node, const lr_field *field,
-                       lr_vec3 *vector) {
+                       lr_vec3 *vector)
+{
     lr_vec3 read;
     if (node->kind == LR_NODE_LIST) {
         if (!read_triple(reader, node, field, field->name, "xyz", &read))
@@ -312,7 +324,8 @@ static bool read_scale(lr_reader *reader, const lr_node *node, const lr_field *f
 }
 
 static bool read_rotate(lr_reader *reader, const lr_node *node, const lr_field *field,
-                        lr_transform *transform) {
+                        lr_transform *transform)
+{
     if (node->kind == LR_NODE_MAP) {
         lr_rotation_draft draft;
         lr_given given;
@@ -335,7 +348,8 @@ static bool read_rotate(lr_reader *reader, const lr_node *node, const lr_field *
 /* ---- Colours ------------------------------------------------------------------------------- */
 
 bool lr_read_color(lr_reader *reader, const lr_node *node, const lr_field *field, const char *what,
-                   lr_color *color) {
+                   lr_color *color)
+{
     char expected[LR_EXPECTED_MAX], message[LR_SHOWN_MAX * 2 + LR_EXPECTED_MAX];
     char described[LR_SHOWN_MAX + 32];
     lr_field as_color = *field;
@@ -377,7 +391,8 @@ bool lr_read_color(lr_reader *reader, const lr_node *node, const lr_field *field
 }
 
 bool lr_read_colors(lr_reader *reader, const lr_node *node, const lr_field *field,
-                    lr_color colors[2]) {
+                    lr_color colors[2])
+{
     if (node->kind != LR_NODE_LIST || node->count != 2) {
         char expected[LR_EXPECTED_MAX];
         lr_field pair = *field;
@@ -394,7 +409,8 @@ bool lr_read_colors(lr_reader *reader, const lr_node *node, const lr_field *fiel
     return good;
 }
 
-bool lr_read_value(lr_reader *reader, const lr_node *node, const lr_field *field, void *out) {
+bool lr_read_value(lr_reader *reader, const lr_node *node, const lr_field *field, void *out)
+{
     double number;
     switch (field->type) {
     case LR_FIELD_NUMBER:

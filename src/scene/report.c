@@ -10,15 +10,18 @@
 #define EXCERPT_COLUMNS 100
 #define TAB_COLUMNS 4
 
-bool lr_report_has_room(const lr_report *report) {
+bool lr_report_has_room(const lr_report *report)
+{
     return report->count < LR_REPORT_MAX;
 }
 
-bool lr_report_failed(const lr_report *report) {
+bool lr_report_failed(const lr_report *report)
+{
     return report->count > 0 || report->no_memory;
 }
 
-void lr_report_add(lr_report *report, size_t offset, const char *format, ...) {
+void lr_report_add(lr_report *report, size_t offset, const char *format, ...)
+{
     if (!lr_report_has_room(report)) {
         report->dropped++;
         return;
@@ -42,13 +45,15 @@ void lr_report_add(lr_report *report, size_t offset, const char *format, ...) {
     report->problems[report->count++] = (lr_problem){offset, copy};
 }
 
-void lr_report_free(lr_report *report) {
+void lr_report_free(lr_report *report)
+{
     for (uint32_t i = 0; i < report->count; i++)
         free(report->problems[i].message);
     report->count = 0;
 }
 
-size_t lr_utf8_length(const char *text, size_t length) {
+size_t lr_utf8_length(const char *text, size_t length)
+{
     const unsigned char *c = (const unsigned char *)text;
     if (length == 0)
         return 0;
@@ -68,7 +73,8 @@ size_t lr_utf8_length(const char *text, size_t length) {
 }
 
 /* One character as it may be printed, 1 to 4 columns wide. Advances *position. */
-static int show_character(char out[8], const char *text, size_t length, size_t *position) {
+static int show_character(char out[8], const char *text, size_t length, size_t *position)
+{
     unsigned char first = (unsigned char)text[*position];
     size_t size = lr_utf8_length(text + *position, length - *position);
     bool c1_control = size == 2 && first == 0xC2 && (unsigned char)text[*position + 1] < 0xA0;
@@ -84,7 +90,8 @@ static int show_character(char out[8], const char *text, size_t length, size_t *
     return 1;
 }
 
-const char *lr_shown(char buffer[LR_SHOWN_MAX], const char *text, size_t length) {
+const char *lr_shown(char buffer[LR_SHOWN_MAX], const char *text, size_t length)
+{
     size_t used = 0, position = 0;
     int columns = 0;
     while (position < length && columns < 40) {
@@ -98,16 +105,19 @@ const char *lr_shown(char buffer[LR_SHOWN_MAX], const char *text, size_t length)
     return buffer;
 }
 
-static bool is_break(char c) {
+static bool is_break(char c)
+{
     return c == '\n' || c == '\r';
 }
 
-static bool is_continuation(char c) {
+static bool is_continuation(char c)
+{
     return ((unsigned char)c & 0xC0) == 0x80;
 }
 
 /* By place; at one place by text, so that the order does not depend on qsort. */
-static int compare_problems(const void *a, const void *b) {
+static int compare_problems(const void *a, const void *b)
+{
     const lr_problem *left = a, *right = b;
     if (left->offset != right->offset)
         return left->offset < right->offset ? -1 : 1;
@@ -120,7 +130,8 @@ typedef struct cursor {
     uint32_t line, column; /* from 1; column in characters */
 } cursor;
 
-static void cursor_advance(cursor *at, const lr_report *report, size_t offset) {
+static void cursor_advance(cursor *at, const lr_report *report, size_t offset)
+{
     for (; at->offset < offset; at->offset++) {
         char c = report->text[at->offset];
         bool crlf =
@@ -136,7 +147,8 @@ static void cursor_advance(cursor *at, const lr_report *report, size_t offset) {
 }
 
 /* The source line and the caret below it, cut to EXCERPT_COLUMNS around the caret. */
-static void write_excerpt(FILE *out, const lr_report *report, const cursor *at) {
+static void write_excerpt(FILE *out, const lr_report *report, const cursor *at)
+{
     size_t begin = at->line_start;
     if (at->offset - begin > EXCERPT_COLUMNS * 2 / 3) {
         begin = at->offset - EXCERPT_COLUMNS * 2 / 3 + 8;
@@ -168,7 +180,8 @@ static void write_excerpt(FILE *out, const lr_report *report, const cursor *at) 
     fprintf(out, "%s\n      | %*s^\n", cut ? "..." : "", caret, "");
 }
 
-char *lr_report_text(lr_report *report) {
+char *lr_report_text(lr_report *report)
+{
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);

@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static lr_camera *add_camera(lr_reader *reader) {
+static lr_camera *add_camera(lr_reader *reader)
+{
     lr_scene *scene = reader->scene;
     if (!lr_array_reserve((void **)&scene->cameras, scene->camera_count, &reader->camera_capacity,
                           sizeof *scene->cameras)) {
@@ -17,7 +18,8 @@ static lr_camera *add_camera(lr_reader *reader) {
     return &scene->cameras[scene->camera_count++];
 }
 
-static void read_camera(lr_reader *reader, const lr_node *node, const lr_node *name, lr_vec3 up) {
+static void read_camera(lr_reader *reader, const lr_node *node, const lr_node *name, lr_vec3 up)
+{
     lr_camera *camera = add_camera(reader);
     lr_given given;
     if (!camera)
@@ -55,7 +57,8 @@ static void read_camera(lr_reader *reader, const lr_node *node, const lr_node *n
                       lr_parallel(view, (lr_vec3){0, 0, 1}) ? 0 : -1);
 }
 
-static void read_cameras(lr_reader *reader, const lr_node *node, lr_vec3 up) {
+static void read_cameras(lr_reader *reader, const lr_node *node, lr_vec3 up)
+{
     if (node->kind != LR_NODE_MAP || node->count == 0) {
         lr_report_type(reader, node, "cameras",
                        "a mapping of names to cameras, such as `front: {from: [0, 1, 5]}`");
@@ -65,7 +68,8 @@ static void read_cameras(lr_reader *reader, const lr_node *node, lr_vec3 up) {
         read_camera(reader, lr_map_value(node, i), lr_map_key(node, i), up);
 }
 
-static void read_background(lr_reader *reader, const lr_node *node, const lr_field *field) {
+static void read_background(lr_reader *reader, const lr_node *node, const lr_field *field)
+{
     lr_color *background = reader->scene->background;
     lr_given given;
     if (node->kind == LR_NODE_MAP) {
@@ -80,7 +84,8 @@ static void read_background(lr_reader *reader, const lr_node *node, const lr_fie
 
 /* Cameras are known to be given in one way or the other, else that is reported. */
 static void read_all_cameras(lr_reader *reader, const lr_node *root, const lr_given *given,
-                             lr_vec3 up) {
+                             lr_vec3 up)
+{
     const lr_record *record = &lr_scene_record;
     const lr_node *camera = lr_given_value(given, record, "camera");
     const lr_node *cameras = lr_given_value(given, record, "cameras");
@@ -97,7 +102,8 @@ static void read_all_cameras(lr_reader *reader, const lr_node *root, const lr_gi
         read_cameras(reader, cameras, up);
 }
 
-void lr_read_scene(lr_reader *reader, const lr_node *root) {
+void lr_read_scene(lr_reader *reader, const lr_node *root)
+{
     const lr_record *record = &lr_scene_record;
     lr_scene *scene = reader->scene;
     lr_given given;
@@ -141,7 +147,8 @@ void lr_read_scene(lr_reader *reader, const lr_node *root) {
         lr_read_objects(reader, objects);
 }
 
-void lr_scene_destroy(lr_scene *scene) {
+void lr_scene_destroy(lr_scene *scene)
+{
     if (!scene)
         return;
     for (uint32_t i = 0; i < scene->camera_count; i++)
@@ -157,7 +164,8 @@ void lr_scene_destroy(lr_scene *scene) {
 }
 
 /* Reads the report's text into the scene; what is wrong goes to the report. */
-static void read_text(lr_scene *scene, lr_report *report) {
+static void read_text(lr_scene *scene, lr_report *report)
+{
     if (!lr_text_check(report))
         return;
     lr_tree tree;
@@ -175,7 +183,8 @@ static void read_text(lr_scene *scene, lr_report *report) {
 }
 
 lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_scene **scene,
-                         char **report, lr_error *error) {
+                         char **report, lr_error *error)
+{
     *scene = NULL;
     *report = NULL;
     lr_status status = LR_OK;
@@ -214,7 +223,8 @@ done:
     return status;
 }
 
-lr_status lr_scene_load(const char *path, lr_scene **scene, char **report, lr_error *error) {
+lr_status lr_scene_load(const char *path, lr_scene **scene, char **report, lr_error *error)
+{
     char *text;
     size_t length;
     *scene = NULL;

@@ -88,9 +88,9 @@ typedef struct lr_object {
             lr_vec3 corner, u, v; /* corner + a u + b v, 0 <= a, b <= 1; u and v not parallel */
         } rectangle;
         struct {
-            lr_vec3 from, to;       /* centres of the two ends, distinct */
+            lr_vec3 from, to;              /* centres of the two ends, distinct */
             double radius_from, radius_to; /* cylinder: equal. cone: >= 0, not both 0 */
-        } cone; /* cylinder and cone */
+        } cone;                            /* cylinder and cone */
         struct {
             lr_vec3 a, b, c; /* not on one line; normal (b - a) x (c - a) */
         } triangle;
@@ -127,7 +127,7 @@ struct lr_scene {
     uint32_t material_count;
     lr_object *objects;
     uint32_t object_count; /* >= 1 */
-    lr_light *lights; /* empty only when the scene says `lights: []` */
+    lr_light *lights;      /* empty only when the scene says `lights: []` */
     uint32_t light_count;
     bool default_light; /* no `lights` key: the renderer adds one that suits the camera */
     lr_color ambient;

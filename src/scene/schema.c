@@ -10,73 +10,85 @@ typedef struct schema {
     bool failed;
 } schema;
 
-static json_t *put(schema *s, json_t *object, const char *key, json_t *value) {
+static json_t *put(schema *s, json_t *object, const char *key, json_t *value)
+{
     if (json_object_set_new(object, key, value) != 0)
         s->failed = true;
     return object;
 }
 
-static json_t *append(schema *s, json_t *array, json_t *value) {
+static json_t *append(schema *s, json_t *array, json_t *value)
+{
     if (json_array_append_new(array, value) != 0)
         s->failed = true;
     return array;
 }
 
-static json_t *typed(schema *s, const char *type) {
+static json_t *typed(schema *s, const char *type)
+{
     return put(s, json_object(), "type", json_string(type));
 }
 
-static json_t *reference(schema *s, const char *name) {
+static json_t *reference(schema *s, const char *name)
+{
     char path[64] = "#/$defs/";
     strncat(path, name, sizeof path - strlen(path) - 1);
     return put(s, json_object(), "$ref", json_string(path));
 }
 
 /* Whole numbers are written as such: 1, not 1.0. */
-static json_t *number(double value) {
+static json_t *number(double value)
+{
     if (value == (double)(json_int_t)value && value < 1e15 && value > -1e15)
         return json_integer((json_int_t)value);
     return json_real(value);
 }
 
-static json_t *numbers(schema *s, const double *values, int count) {
+static json_t *numbers(schema *s, const double *values, int count)
+{
     json_t *array = json_array();
     for (int i = 0; i < count; i++)
         append(s, array, number(values[i]));
     return array;
 }
 
-static json_t *ranged(schema *s, const char *type, const lr_field *field) {
+static json_t *ranged(schema *s, const char *type, const lr_field *field)
+{
     json_t *node = typed(s, type);
     put(s, node, field->flags & LR_ABOVE ? "exclusiveMinimum" : "minimum", number(field->minimum));
     put(s, node, field->flags & LR_BELOW ? "exclusiveMaximum" : "maximum", number(field->maximum));
     return node;
 }
 
-static json_t *list_of(schema *s, json_t *items, int count) {
+static json_t *list_of(schema *s, json_t *items, int count)
+{
     json_t *node = put(s, typed(s, "array"), "items", items);
     put(s, node, "minItems", json_integer(count));
     return put(s, node, "maxItems", json_integer(count));
 }
 
-static json_t *any_of(schema *s, json_t *first, json_t *second) {
+static json_t *any_of(schema *s, json_t *first, json_t *second)
+{
     json_t *options = append(s, append(s, json_array(), first), second);
     return put(s, json_object(), "anyOf", options);
 }
 
 /* A colour with components up to 1, or up to the language's limit. */
-static json_t *color(schema *s, const lr_field *field) {
+static json_t *color(schema *s, const lr_field *field)
+{
     return reference(s, field->maximum <= 1 ? "share" : "color");
 }
 
 static json_t *record_schema(schema *s, const lr_record *record);
 
-static json_t *named(schema *s, const char *definition, int minimum) {
+static json_t *named(schema *s, const char *definition, int minimum)
+{
     json_t *node = put(s, typed(s, "object"), "additionalProperties", reference(s, definition));
     return minimum ? put(s, node, "minProperties", json_integer(minimum)) : node;
 }
 
-static json_t *field_schema(schema *s, const lr_field *field) {
+static json_t *field_schema(schema *s, const lr_field *field)
+{
     const double *d = field->fallback;
     json_t *node = NULL, *fallback = NULL;
     bool grey = d[0] == d[1] && d[1] == d[2];
@@ -155,7 +167,8 @@ static json_t *field_schema(schema *s, const lr_field *field) {
     return node;
 }
 
-static json_t *record_schema(schema *s, const lr_record *record) {
+static json_t *record_schema(schema *s, const lr_record *record)
+{
     json_t *node = typed(s, "object");
     json_t *properties = json_object(), *required = json_array();
     put(s, node, "description", json_string(record->doc));
@@ -175,7 +188,8 @@ static json_t *record_schema(schema *s, const lr_record *record) {
 
 /* An item {kind: {...}} of a list: exactly one of the records' names. */
 static json_t *item_schema(schema *s, const lr_record *records, uint32_t count,
-                           const lr_record *extra) {
+                           const lr_record *extra)
+{
     json_t *node = typed(s, "object"), *properties = json_object();
     for (uint32_t i = 0; i < count; i++)
         put(s, properties, records[i].name, record_schema(s, &records[i]));
@@ -188,7 +202,8 @@ static json_t *item_schema(schema *s, const lr_record *records, uint32_t count,
 }
 
 /* Any word passes as a colour name here: 148 names in a schema would drown the completion. */
-static json_t *color_schema(schema *s, double maximum) {
+static json_t *color_schema(schema *s, double maximum)
+{
     lr_field component = {.maximum = maximum};
     json_t *options = json_array();
     append(s, options, ranged(s, "number", &component));
@@ -202,7 +217,8 @@ static json_t *color_schema(schema *s, double maximum) {
                            "\"#rgb\" or a CSS colour name."));
 }
 
-static json_t *definitions(schema *s) {
+static json_t *definitions(schema *s)
+{
     json_t *defs = json_object();
     lr_field coordinate = {.minimum = -LR_COORDINATE_MAX, .maximum = LR_COORDINATE_MAX};
     put(s, defs, "vector", list_of(s, ranged(s, "number", &coordinate), 3));
@@ -221,7 +237,8 @@ static json_t *definitions(schema *s) {
 }
 
 /* The scene's `camera` or `cameras`, not both. */
-static json_t *one_camera(schema *s) {
+static json_t *one_camera(schema *s)
+{
     json_t *options = json_array();
     static const char *const keys[] = {"camera", "cameras"};
     for (int i = 0; i < 2; i++) {
@@ -231,7 +248,8 @@ static json_t *one_camera(schema *s) {
     return options;
 }
 
-char *lr_scene_schema(void) {
+char *lr_scene_schema(void)
+{
     schema s = {0};
     json_t *root = json_object();
     put(&s, root, "$schema", json_string("https://json-schema.org/draft/2020-12/schema"));

@@ -8,7 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool report_bad_byte(lr_report *report, size_t offset) {
+static bool report_bad_byte(lr_report *report, size_t offset)
+{
     unsigned char byte = (unsigned char)report->text[offset];
     if (byte == 0)
         lr_report_add(report, offset, "a NUL byte, expected text in UTF-8");
@@ -20,7 +21,8 @@ static bool report_bad_byte(lr_report *report, size_t offset) {
 }
 
 /* Sizes first: nothing below is worth its time for a text that is refused anyway. */
-bool lr_text_check(lr_report *report) {
+bool lr_text_check(lr_report *report)
+{
     if (report->length > LR_TEXT_MAX) {
         lr_report_add(report, 0,
                       "the scene text has %zu bytes, more than the limit of %u (16 MiB); bulk "
@@ -55,7 +57,8 @@ typedef struct line {
     size_t start, end; /* without the line break */
 } line;
 
-static line line_at(const lr_report *report, size_t offset) {
+static line line_at(const lr_report *report, size_t offset)
+{
     line found = {offset, offset};
     while (found.start > 0 && report->text[found.start - 1] != '\n')
         found.start--;
@@ -64,7 +67,8 @@ static line line_at(const lr_report *report, size_t offset) {
     return found;
 }
 
-static bool line_before(const lr_report *report, line *at) {
+static bool line_before(const lr_report *report, line *at)
+{
     if (at->start == 0)
         return false;
     *at = line_at(report, at->start - 1);
@@ -72,7 +76,8 @@ static bool line_before(const lr_report *report, line *at) {
 }
 
 /* libfyaml gives places of errors as line and column; the report takes offsets. */
-static size_t offset_of(const lr_report *report, int line_number, int column) {
+static size_t offset_of(const lr_report *report, int line_number, int column)
+{
     size_t offset = 0;
     for (int i = 1; i < line_number && offset < report->length; offset++)
         if (report->text[offset] == '\n' ||
@@ -86,7 +91,8 @@ static size_t offset_of(const lr_report *report, int line_number, int column) {
     return offset;
 }
 
-size_t lr_hex_comment(const lr_report *report, size_t offset, size_t *digits) {
+size_t lr_hex_comment(const lr_report *report, size_t offset, size_t *digits)
+{
     const char *text = report->text;
     for (size_t i = offset; i + 1 < report->length && text[i] != '\n'; i++) {
         if (text[i] == '"' || text[i] == '\'')
@@ -104,7 +110,8 @@ size_t lr_hex_comment(const lr_report *report, size_t offset, size_t *digits) {
 }
 
 /* An unquoted colour inside brackets: the comment swallows the closing bracket. */
-static bool explain_hex_comment(lr_report *report, line at) {
+static bool explain_hex_comment(lr_report *report, line at)
+{
     for (int i = 0; i < 4; i++) {
         size_t digits;
         size_t hash = lr_hex_comment(report, at.start, &digits);
@@ -127,7 +134,8 @@ static bool explain_hex_comment(lr_report *report, line at) {
 }
 
 /* A tab before the first other character; behind it, and in brackets, tabs are allowed. */
-static bool explain_tab(lr_report *report, line at) {
+static bool explain_tab(lr_report *report, line at)
+{
     for (size_t i = at.start; i < at.end; i++) {
         if (report->text[i] == '\t') {
             lr_report_add(report, i, "a tab indents this line, expected spaces");
@@ -140,7 +148,8 @@ static bool explain_tab(lr_report *report, line at) {
 }
 
 /* `radius:1` at the start of a line, for a key that exists. */
-static bool explain_missing_space(lr_report *report, line at) {
+static bool explain_missing_space(lr_report *report, line at)
+{
     size_t i = at.start;
     while (i < at.end && (report->text[i] == ' ' || report->text[i] == '-' ||
                           report->text[i] == '{' || report->text[i] == '['))
@@ -169,7 +178,8 @@ static bool explain_missing_space(lr_report *report, line at) {
 
 /* A dash with nothing behind it, in a list that is not indented: libfyaml refuses it at the line
  * after. */
-static bool explain_empty_item(lr_report *report, line at) {
+static bool explain_empty_item(lr_report *report, line at)
+{
     while (line_before(report, &at)) {
         size_t i = at.start;
         while (i < at.end && isspace((unsigned char)report->text[i]))
@@ -188,7 +198,8 @@ static bool explain_empty_item(lr_report *report, line at) {
 }
 
 /* The innermost bracket that is open at the end, by a scan that knows quotes and comments. */
-static bool explain_open_bracket(lr_report *report, size_t end) {
+static bool explain_open_bracket(lr_report *report, size_t end)
+{
     size_t open[LR_NESTING_MAX];
     uint32_t depth = 0;
     const char *text = report->text;
@@ -237,7 +248,8 @@ static const struct {
     {"could not find expected", "expected `key: value` here, with a space after the colon"},
 };
 
-void lr_syntax_error(lr_report *report, int line_number, int column, const char *message) {
+void lr_syntax_error(lr_report *report, int line_number, int column, const char *message)
+{
     size_t offset = offset_of(report, line_number, column);
     line at = line_at(report, offset);
     line before = at;

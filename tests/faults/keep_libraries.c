@@ -2,7 +2,8 @@
  * and so be told apart from lavaray. */
 int dlclose(void *handle);
 
-int dlclose(void *handle) {
+int dlclose(void *handle)
+{
     (void)handle;
     return 0;
 }

@@ -123,7 +123,8 @@ static PFN_vkGetDeviceProcAddr real_device;
 static FILE *log_file;
 
 /* Whether this call is one that must fail; *result is then what it returns. */
-static bool fails(wrapped_index index, VkResult *result) {
+static bool fails(wrapped_index index, VkResult *result)
+{
     unsigned call = ++calls[index];
     const char *fault = getenv("LAVARAY_FAULT");
     size_t length = strlen(names[index]);
@@ -138,7 +139,8 @@ static bool fails(wrapped_index index, VkResult *result) {
 }
 
 #define X(name, parameters, arguments)                                                             \
-    static VKAPI_ATTR VkResult VKAPI_CALL shim_##name parameters {                                 \
+    static VKAPI_ATTR VkResult VKAPI_CALL shim_##name parameters                                   \
+    {                                                                                              \
         VkResult result;                                                                           \
         if (fails(INDEX_##name, &result)) {                                                        \
             return result;                                                                         \
@@ -152,7 +154,8 @@ WRAPPED(X)
 static const PFN_vkVoidFunction shims[WRAPPED_COUNT] = {WRAPPED(X)};
 #undef X
 
-static PFN_vkVoidFunction wrap(const char *name, PFN_vkVoidFunction found) {
+static PFN_vkVoidFunction wrap(const char *name, PFN_vkVoidFunction found)
+{
     for (int i = 0; found && i < WRAPPED_COUNT; i++) {
         if (strcmp(name, names[i]) == 0) {
             real_functions[i] = found;
@@ -165,11 +168,13 @@ static PFN_vkVoidFunction wrap(const char *name, PFN_vkVoidFunction found) {
     return found;
 }
 
-static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL device_proc(VkDevice device, const char *name) {
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL device_proc(VkDevice device, const char *name)
+{
     return wrap(name, real_device(device, name));
 }
 
-static void write_log(void) {
+static void write_log(void)
+{
     for (int i = 0; i < WRAPPED_COUNT; i++) {
         if (calls[i]) {
             fprintf(log_file, "%s %u\n", names[i], calls[i]);
@@ -178,7 +183,8 @@ static void write_log(void) {
     fclose(log_file);
 }
 
-static void start(void) {
+static void start(void)
+{
     const char *path = getenv("LAVARAY_REAL_VULKAN"), *log_path = getenv("LAVARAY_FAULT_LOG");
     void *loader = path ? dlopen(path, RTLD_NOW | RTLD_LOCAL) : NULL;
     if (!loader) {
@@ -196,7 +202,8 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL vkGetInstanceProcAddr(VkInstance instan
                                                                const char *name);
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL vkGetInstanceProcAddr(VkInstance instance,
-                                                               const char *name) {
+                                                               const char *name)
+{
     if (!real_instance) {
         start();
     }

@@ -23,7 +23,8 @@
     } while (0)
 
 /* Parses text that must be a scene; prints the report when it is not. */
-static inline lr_scene *parse_good(const char *text) {
+static inline lr_scene *parse_good(const char *text)
+{
     lr_scene *scene = NULL;
     char *report = NULL;
     lr_error error = {0};
@@ -37,7 +38,8 @@ static inline lr_scene *parse_good(const char *text) {
 }
 
 /* Parses text that must not be a scene and returns the report. */
-static inline char *parse_bad(const char *text, size_t length) {
+static inline char *parse_bad(const char *text, size_t length)
+{
     lr_scene *scene = NULL;
     char *report = NULL;
     lr_error error = {0};
@@ -52,7 +54,8 @@ static inline char *parse_bad(const char *text, size_t length) {
 }
 
 /* Whether the report about the text holds the fragment; prints both when it does not. */
-static inline bool reports(const char *text, const char *fragment) {
+static inline bool reports(const char *text, const char *fragment)
+{
     char *report = parse_bad(text, strlen(text));
     bool found = strstr(report, fragment) != NULL;
     if (!found)

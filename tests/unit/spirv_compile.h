@@ -16,7 +16,8 @@
 
 static char spirv_folder[64];
 
-static inline const char *spirv_path(const char *name) {
+static inline const char *spirv_path(const char *name)
+{
     static char path[4][128];
     static unsigned next;
     char *result = path[next++ % 4];
@@ -24,20 +25,23 @@ static inline const char *spirv_path(const char *name) {
     return result;
 }
 
-static inline int spirv_setup(void **state) {
+static inline int spirv_setup(void **state)
+{
     (void)state;
     strcpy(spirv_folder, "/tmp/lavaray-spirv-XXXXXX");
     return mkdtemp(spirv_folder) ? 0 : -1;
 }
 
-static inline int spirv_teardown(void **state) {
+static inline int spirv_teardown(void **state)
+{
     (void)state;
     char command[128];
     snprintf(command, sizeof command, "rm -rf '%s'", spirv_folder);
     return system(command);
 }
 
-static inline bool spirv_has_tool(const char *name) {
+static inline bool spirv_has_tool(const char *name)
+{
     char command[128];
     snprintf(command, sizeof command, "command -v %s >/dev/null 2>&1", name);
     if (system(command) == 0)
@@ -46,7 +50,8 @@ static inline bool spirv_has_tool(const char *name) {
     return false;
 }
 
-static inline lr_spirv spirv_load(const char *path) {
+static inline lr_spirv spirv_load(const char *path)
+{
     char *bytes;
     size_t size;
     lr_error error = {0};
@@ -60,7 +65,8 @@ static inline lr_spirv spirv_load(const char *path) {
 }
 
 /* Skips the test when there is no compiler. */
-static inline lr_spirv spirv_compile(const char *source) {
+static inline lr_spirv spirv_compile(const char *source)
+{
     static int has_compiler = -1;
     if (has_compiler < 0)
         has_compiler = spirv_has_tool("glslangValidator");
@@ -80,7 +86,8 @@ static inline lr_spirv spirv_compile(const char *source) {
 }
 
 /* Whether spirv-val accepts the module; true when it is not installed. */
-static inline bool spirv_is_valid(const uint32_t *words, size_t count) {
+static inline bool spirv_is_valid(const uint32_t *words, size_t count)
+{
     char command[256];
     lr_error error = {0};
     const char *path = spirv_path("validate.spv");
@@ -92,7 +99,8 @@ static inline bool spirv_is_valid(const uint32_t *words, size_t count) {
 }
 
 /* The number of instructions that begin with these words. */
-static inline unsigned spirv_count(const lr_spirv *module, const uint32_t *words, size_t count) {
+static inline unsigned spirv_count(const lr_spirv *module, const uint32_t *words, size_t count)
+{
     unsigned found = 0;
     for (size_t at = 5; at < module->count; at += module->words[at] >> 16)
         if (module->count - at >= count && (module->words[at] & 0xffff) == words[0] &&

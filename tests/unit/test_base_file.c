@@ -19,21 +19,24 @@
 
 static char folder[64];
 
-static int setup(void **state) {
+static int setup(void **state)
+{
     (void)state;
     signal(SIGPIPE, SIG_IGN); /* as the command line does */
     strcpy(folder, "/tmp/lavaray-file-XXXXXX");
     return mkdtemp(folder) ? 0 : -1;
 }
 
-static int teardown(void **state) {
+static int teardown(void **state)
+{
     (void)state;
     char command[128];
     snprintf(command, sizeof command, "rm -rf '%s'", folder);
     return system(command);
 }
 
-static const char *in_folder(const char *name) {
+static const char *in_folder(const char *name)
+{
     static char paths[4][512];
     static unsigned next;
     char *path = paths[next++ % 4];
@@ -41,13 +44,15 @@ static const char *in_folder(const char *name) {
     return path;
 }
 
-static void empty_folder(void) {
+static void empty_folder(void)
+{
     char command[256];
     snprintf(command, sizeof command, "rm -rf '%s'/* '%s'/.l*", folder, folder);
     assert_int_equal(system(command), 0);
 }
 
-static unsigned count_entries(void) {
+static unsigned count_entries(void)
+{
     unsigned count = 0;
     DIR *directory = opendir(folder);
     assert_non_null(directory);
@@ -57,7 +62,8 @@ static unsigned count_entries(void) {
     return count;
 }
 
-static void expect_content(const char *path, const char *expected) {
+static void expect_content(const char *path, const char *expected)
+{
     char *bytes;
     size_t size;
     lr_error error = {0};
@@ -68,13 +74,15 @@ static void expect_content(const char *path, const char *expected) {
     free(bytes);
 }
 
-static void write_text(const char *path, const char *text) {
+static void write_text(const char *path, const char *text)
+{
     lr_error error = {0};
     if (lr_file_write(path, text, strlen(text), &error) != LR_OK)
         fail_msg("%s", error.message);
 }
 
-static void expect_write_failure(const char *path, const char *expected, const char *remedy) {
+static void expect_write_failure(const char *path, const char *expected, const char *remedy)
+{
     lr_error error = {0};
     assert_int_equal(lr_file_write(path, "text", 4, &error), LR_ERROR_FILE);
     assert_int_equal(error.status, LR_ERROR_FILE);
@@ -82,7 +90,8 @@ static void expect_write_failure(const char *path, const char *expected, const c
         fail_msg("expected \"%s\" and \"%s\", got \"%s\"", expected, remedy, error.message);
 }
 
-static mode_t mode_of(const char *path) {
+static mode_t mode_of(const char *path)
+{
     struct stat info;
     assert_int_equal(lstat(path, &info), 0);
     return info.st_mode & 07777;
@@ -90,7 +99,8 @@ static mode_t mode_of(const char *path) {
 
 /* ---- Reading ------------------------------------------------------------------------------ */
 
-static void test_read(void **state) {
+static void test_read(void **state)
+{
     (void)state;
     empty_folder();
     write_text(in_folder("a"), "some text");
@@ -113,7 +123,8 @@ static void test_read(void **state) {
     free(large);
 }
 
-static void expect_read_failure(const char *path, size_t limit, const char *expected) {
+static void expect_read_failure(const char *path, size_t limit, const char *expected)
+{
     char *bytes = (char *)1;
     size_t size = 1;
     lr_error error = {0};
@@ -124,7 +135,8 @@ static void expect_read_failure(const char *path, size_t limit, const char *expe
         fail_msg("expected \"%s\", got \"%s\"", expected, error.message);
 }
 
-static void test_read_failures(void **state) {
+static void test_read_failures(void **state)
+{
     (void)state;
     empty_folder();
     write_text(in_folder("ten"), "0123456789");
@@ -145,7 +157,8 @@ static void test_read_failures(void **state) {
     free(bytes);
 }
 
-static void test_read_standard_input(void **state) {
+static void test_read_standard_input(void **state)
+{
     (void)state;
     int ends[2], saved = dup(STDIN_FILENO);
     char *bytes;
@@ -171,7 +184,8 @@ static void test_read_standard_input(void **state) {
 
 /* ---- Writing ------------------------------------------------------------------------------ */
 
-static void test_write_and_replace(void **state) {
+static void test_write_and_replace(void **state)
+{
     (void)state;
     empty_folder();
     mode_t old = umask(027);
@@ -190,7 +204,8 @@ static void test_write_and_replace(void **state) {
 }
 
 /* Whoever has the old file open goes on reading the old file, whole. */
-static void test_replace_is_atomic(void **state) {
+static void test_replace_is_atomic(void **state)
+{
     (void)state;
     empty_folder();
     write_text(in_folder("a"), "old content");
@@ -202,7 +217,8 @@ static void test_replace_is_atomic(void **state) {
     close(fd);
 }
 
-static void test_relative_path(void **state) {
+static void test_relative_path(void **state)
+{
     (void)state;
     empty_folder();
     char before[4096];
@@ -215,7 +231,8 @@ static void test_relative_path(void **state) {
     assert_int_equal(count_entries(), 1);
 }
 
-static void test_symbolic_links(void **state) {
+static void test_symbolic_links(void **state)
+{
     (void)state;
     empty_folder();
     struct stat info;
@@ -246,7 +263,8 @@ static void test_symbolic_links(void **state) {
     assert_int_equal(count_entries(), 6);
 }
 
-static void test_bad_places(void **state) {
+static void test_bad_places(void **state)
+{
     (void)state;
     empty_folder();
     write_text(in_folder("file"), "x");
@@ -269,7 +287,8 @@ static void test_bad_places(void **state) {
 }
 
 /* As a user without rights; root may write everywhere. */
-static void test_no_permission(void **state) {
+static void test_no_permission(void **state)
+{
     (void)state;
     empty_folder();
     write_text(in_folder("protected"), "old");
@@ -299,7 +318,8 @@ static void test_no_permission(void **state) {
 }
 
 /* A write that fails half-way: the limit on file sizes stands in for a full disk. */
-static void test_failure_keeps_the_old_file(void **state) {
+static void test_failure_keeps_the_old_file(void **state)
+{
     (void)state;
     empty_folder();
     write_text(in_folder("a"), "old");
@@ -322,7 +342,8 @@ static void test_failure_keeps_the_old_file(void **state) {
     free(bytes);
 }
 
-static void test_fifo(void **state) {
+static void test_fifo(void **state)
+{
     (void)state;
     empty_folder();
     const char *path = in_folder("fifo");
@@ -356,7 +377,8 @@ static void test_fifo(void **state) {
     free(bytes);
 }
 
-static lr_status write_with_stdout(int fd, const char *path, lr_error *error) {
+static lr_status write_with_stdout(int fd, const char *path, lr_error *error)
+{
     fflush(stdout);
     int saved = dup(STDOUT_FILENO);
     if (fd < 0)
@@ -369,7 +391,8 @@ static lr_status write_with_stdout(int fd, const char *path, lr_error *error) {
     return status;
 }
 
-static void test_standard_output(void **state) {
+static void test_standard_output(void **state)
+{
     (void)state;
     static const char *const paths[] = {"-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"};
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
@@ -398,7 +421,8 @@ static void test_standard_output(void **state) {
     }
 }
 
-int main(void) {
+int main(void)
+{
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_read),
         cmocka_unit_test(test_read_failures),

@@ -13,7 +13,8 @@
 
 static const uint32_t maxvals[] = {1, 2, 3, 7, 100, 254, 255, 256, 1000, 4095, 65534, 65535};
 
-static lr_curve create(lr_transfer transfer, uint32_t maxval) {
+static lr_curve create(lr_transfer transfer, uint32_t maxval)
+{
     lr_curve curve;
     lr_error error = {0};
     if (lr_curve_create(&curve, transfer, maxval, &error) != LR_OK)
@@ -22,7 +23,8 @@ static lr_curve create(lr_transfer transfer, uint32_t maxval) {
 }
 
 /* The smallest float that is not below the linear value of `encoded`, from 0 to 1. */
-static float exact_threshold(lr_transfer transfer, long double encoded) {
+static float exact_threshold(lr_transfer transfer, long double encoded)
+{
     long double x = encoded;
     if (transfer == LR_TRANSFER_SRGB)
         x = encoded <= 0.04045L ? encoded / 12.92L : powl((encoded + 0.055L) / 1.055L, 2.4L);
@@ -30,7 +32,8 @@ static float exact_threshold(lr_transfer transfer, long double encoded) {
     return rounded < x ? nextafterf(rounded, 2) : rounded;
 }
 
-static void test_thresholds(void **state) {
+static void test_thresholds(void **state)
+{
     (void)state;
     for (size_t m = 0; m < sizeof maxvals / sizeof *maxvals; m++)
         for (lr_transfer transfer = LR_TRANSFER_SRGB; transfer <= LR_TRANSFER_LINEAR; transfer++) {
@@ -48,7 +51,8 @@ static void test_thresholds(void **state) {
         }
 }
 
-static void test_encode_at_thresholds(void **state) {
+static void test_encode_at_thresholds(void **state)
+{
     (void)state;
     for (size_t m = 0; m < sizeof maxvals / sizeof *maxvals; m++)
         for (lr_transfer transfer = LR_TRANSFER_SRGB; transfer <= LR_TRANSFER_LINEAR; transfer++) {
@@ -65,7 +69,8 @@ static void test_encode_at_thresholds(void **state) {
 
 /* Linear values round to the nearest integer, halves up; a quotient of integers is exact in
  * long double as far as the comparison needs it. */
-static void test_linear_rounds(void **state) {
+static void test_linear_rounds(void **state)
+{
     (void)state;
     lr_curve curve = create(LR_TRANSFER_LINEAR, 255);
     for (uint32_t i = 0; i <= 1000000; i++) {
@@ -80,7 +85,8 @@ static void test_linear_rounds(void **state) {
     lr_curve_free(&curve);
 }
 
-static void test_every_float_is_monotonic(void **state) {
+static void test_every_float_is_monotonic(void **state)
+{
     (void)state;
     for (uint32_t maxval = 255; maxval <= 65535; maxval += 65280) {
         lr_curve curve = create(LR_TRANSFER_SRGB, maxval);
@@ -99,7 +105,8 @@ static void test_every_float_is_monotonic(void **state) {
     }
 }
 
-static void test_special_values(void **state) {
+static void test_special_values(void **state)
+{
     (void)state;
     static const uint32_t some[] = {1, 255, 256, 65535};
     for (size_t i = 0; i < 4; i++)
@@ -115,7 +122,8 @@ static void test_special_values(void **state) {
         }
 }
 
-static void test_known_srgb_values(void **state) {
+static void test_known_srgb_values(void **state)
+{
     (void)state;
     /* From the sRGB definition by hand: 0.5 -> 0.7354 * 255, 0.18 -> 0.4613, 0.002 -> 0.02584. */
     lr_curve curve = create(LR_TRANSFER_SRGB, 255);
@@ -125,7 +133,8 @@ static void test_known_srgb_values(void **state) {
     lr_curve_free(&curve);
 }
 
-static void test_refusals(void **state) {
+static void test_refusals(void **state)
+{
     (void)state;
     lr_curve curve;
     lr_error error = {0};
@@ -138,7 +147,8 @@ static void test_refusals(void **state) {
 }
 
 /* Printed, not asserted: a loaded machine is no failure. */
-static void test_speed(void **state) {
+static void test_speed(void **state)
+{
     (void)state;
     enum { COUNT = 1920 * 1080 * 3 };
     static const struct {
@@ -166,7 +176,8 @@ static void test_speed(void **state) {
     free(values);
 }
 
-int main(void) {
+int main(void)
+{
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_thresholds),     cmocka_unit_test(test_encode_at_thresholds),
         cmocka_unit_test(test_linear_rounds),  cmocka_unit_test(test_every_float_is_monotonic),

@@ -16,13 +16,15 @@
 
 static char folder[64];
 
-static int setup(void **state) {
+static int setup(void **state)
+{
     (void)state;
     strcpy(folder, "/tmp/lavaray-image-XXXXXX");
     return mkdtemp(folder) ? 0 : -1;
 }
 
-static int teardown(void **state) {
+static int teardown(void **state)
+{
     (void)state;
     char command[128];
     snprintf(command, sizeof command, "rm -rf '%s'", folder);
@@ -30,7 +32,8 @@ static int teardown(void **state) {
 }
 
 /* Every sample differs from its neighbours; some lie outside 0..1. */
-static lr_picture make_picture(uint32_t width, uint32_t height) {
+static lr_picture make_picture(uint32_t width, uint32_t height)
+{
     lr_picture picture = {width, height, malloc(3 * sizeof(float) * width * height)};
     uint32_t seed = width * 31 + height;
     for (size_t i = 0; i < 3 * (size_t)width * height; i++) {
@@ -40,7 +43,8 @@ static lr_picture make_picture(uint32_t width, uint32_t height) {
     return picture;
 }
 
-static unsigned char *encode(const lr_picture *picture, lr_encoding encoding, size_t *size) {
+static unsigned char *encode(const lr_picture *picture, lr_encoding encoding, size_t *size)
+{
     unsigned char *bytes;
     lr_error error = {0};
     if (lr_picture_encode(picture, &encoding, &bytes, size, &error) != LR_OK)
@@ -49,7 +53,8 @@ static unsigned char *encode(const lr_picture *picture, lr_encoding encoding, si
 }
 
 static void expect_bytes(const lr_picture *picture, lr_encoding encoding, const void *expected,
-                         size_t expected_size) {
+                         size_t expected_size)
+{
     size_t size;
     unsigned char *bytes = encode(picture, encoding, &size);
     assert_int_equal(size, expected_size);
@@ -60,7 +65,8 @@ static void expect_bytes(const lr_picture *picture, lr_encoding encoding, const 
 #define EXPECT(picture, text, ...)                                                                 \
     expect_bytes(picture, (lr_encoding){__VA_ARGS__}, text, sizeof text - 1)
 
-static void test_ppm_bytes(void **state) {
+static void test_ppm_bytes(void **state)
+{
     (void)state;
     float pixels[] = {0, 0.25f, 0.5f, 1, 2, NAN};
     lr_picture wide = {2, 1, pixels}, tall = {1, 2, pixels};
@@ -76,7 +82,8 @@ static void test_ppm_bytes(void **state) {
     EXPECT(&wide, "P6\n2 1\n255\n\x00\x89\xbc\xff\xff\x00", .transfer = LR_TRANSFER_SRGB);
 }
 
-static void test_exposure(void **state) {
+static void test_exposure(void **state)
+{
     (void)state;
     float pixels[] = {0.25f, 0.125f, 0.3f};
     lr_picture picture = {1, 1, pixels};
@@ -99,7 +106,8 @@ static void test_exposure(void **state) {
     EXPECT(&picture, "P6\n1 1\n255\n\xff\xff\xff", .transfer = LR_TRANSFER_LINEAR, .exposure = 100);
 }
 
-static void test_exp2(void **state) {
+static void test_exp2(void **state)
+{
     (void)state;
     for (int i = -20000; i <= 20000; i += 7) {
         double stops = i / 100.0, power = image_exp2(stops);
@@ -107,7 +115,8 @@ static void test_exp2(void **state) {
     }
 }
 
-static void test_pfm_bytes(void **state) {
+static void test_pfm_bytes(void **state)
+{
     (void)state;
     float pixels[] = {1, 2, 3, -0.5f, 0, 1e-30f};
     lr_picture picture = {1, 2, pixels};
@@ -126,7 +135,8 @@ static void test_pfm_bytes(void **state) {
 
 /* The samples as the curve alone gives them. */
 static void expect_samples(const lr_picture *picture, lr_transfer transfer, uint32_t maxval,
-                           const unsigned char *raster, size_t size) {
+                           const unsigned char *raster, size_t size)
+{
     lr_curve curve;
     assert_int_equal(lr_curve_create(&curve, transfer, maxval, NULL), LR_OK);
     size_t count = 3 * (size_t)picture->width * picture->height, sample = maxval < 256 ? 1 : 2;
@@ -144,7 +154,8 @@ typedef struct png_input {
     size_t left;
 } png_input;
 
-static void read_png(png_structp png, png_bytep out, size_t size) {
+static void read_png(png_structp png, png_bytep out, size_t size)
+{
     png_input *input = png_get_io_ptr(png);
     if (size > input->left)
         png_error(png, "the file is too short");
@@ -153,7 +164,8 @@ static void read_png(png_structp png, png_bytep out, size_t size) {
     input->left -= size;
 }
 
-static void expect_png(const lr_picture *picture, lr_transfer transfer, uint32_t maxval) {
+static void expect_png(const lr_picture *picture, lr_transfer transfer, uint32_t maxval)
+{
     size_t size;
     unsigned char *bytes = encode(
         picture, (lr_encoding){.format = LR_FORMAT_PNG, .transfer = transfer, .maxval = maxval},
@@ -189,7 +201,8 @@ static void expect_png(const lr_picture *picture, lr_transfer transfer, uint32_t
     free(bytes);
 }
 
-static void test_png(void **state) {
+static void test_png(void **state)
+{
     (void)state;
     static const uint32_t sizes[][2] = {{1, 1}, {1, 7}, {13, 1}, {64, 33}, {300, 200}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
@@ -202,7 +215,8 @@ static void test_png(void **state) {
     }
 }
 
-static bool has_netpbm(void) {
+static bool has_netpbm(void)
+{
     return system(
                "command -v pamtopng >/dev/null 2>&1 && command -v pngtopnm >/dev/null 2>&1 && "
                "command -v pnmtopnm >/dev/null 2>&1 && command -v pnmtoplainpnm >/dev/null 2>&1") ==
@@ -211,7 +225,8 @@ static bool has_netpbm(void) {
 
 static void run(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-static void run(const char *format, ...) {
+static void run(const char *format, ...)
+{
     char command[512];
     va_list arguments;
     va_start(arguments, format);
@@ -223,7 +238,8 @@ static void run(const char *format, ...) {
 
 /* netpbm's plain format is decimal text: what another program understood each sample to be. */
 static void expect_plain(const lr_picture *picture, const char *path, lr_transfer transfer,
-                         uint32_t maxval) {
+                         uint32_t maxval)
+{
     char *text, *at;
     size_t size, count = 3 * (size_t)picture->width * picture->height;
     lr_curve curve;
@@ -244,7 +260,8 @@ static void expect_plain(const lr_picture *picture, const char *path, lr_transfe
     free(text);
 }
 
-static void test_netpbm_reads_ppm(void **state) {
+static void test_netpbm_reads_ppm(void **state)
+{
     (void)state;
     static const uint32_t maxvals[] = {1,   2,   3,   7,    100,  127,   128,   254,
                                        255, 256, 257, 1000, 4095, 32768, 65534, 65535};
@@ -269,7 +286,8 @@ static void test_netpbm_reads_ppm(void **state) {
     lr_picture_free(&picture);
 }
 
-static void test_netpbm_reads_png(void **state) {
+static void test_netpbm_reads_png(void **state)
+{
     (void)state;
     if (!has_netpbm()) {
         print_message("netpbm is not installed\n");
@@ -288,7 +306,8 @@ static void test_netpbm_reads_png(void **state) {
     lr_picture_free(&picture);
 }
 
-static void expect_refusal(const lr_picture *picture, lr_encoding encoding, const char *expected) {
+static void expect_refusal(const lr_picture *picture, lr_encoding encoding, const char *expected)
+{
     unsigned char *bytes;
     size_t size;
     lr_error error = {0};
@@ -299,7 +318,8 @@ static void expect_refusal(const lr_picture *picture, lr_encoding encoding, cons
         fail_msg("expected \"%s\", got \"%s\"", expected, error.message);
 }
 
-static void test_refusals(void **state) {
+static void test_refusals(void **state)
+{
     (void)state;
     float pixels[3] = {0};
     lr_picture picture = {1, 1, pixels};
@@ -319,7 +339,8 @@ static void test_refusals(void **state) {
     expect_refusal(&(lr_picture){UINT32_MAX, UINT32_MAX, pixels}, (lr_encoding){0}, "too large");
 }
 
-static void test_format_from_path(void **state) {
+static void test_format_from_path(void **state)
+{
     (void)state;
     static const struct {
         const char *path;
@@ -346,7 +367,8 @@ static void test_format_from_path(void **state) {
 }
 
 /* The expected hashes are from Python's struct and hashlib. */
-static void test_hash(void **state) {
+static void test_hash(void **state)
+{
     (void)state;
     char hash[65];
     float pixels[] = {0, 0.5f, 1};
@@ -377,7 +399,8 @@ static void test_hash(void **state) {
     lr_picture_free(NULL);
 }
 
-static void test_write_failure(void **state) {
+static void test_write_failure(void **state)
+{
     (void)state;
     char path[128];
     float pixels[3] = {0};
@@ -390,7 +413,8 @@ static void test_write_failure(void **state) {
                      LR_ERROR_ARGUMENT);
 }
 
-int main(void) {
+int main(void)
+{
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ppm_bytes),
         cmocka_unit_test(test_exposure),

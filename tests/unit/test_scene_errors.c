@@ -9,7 +9,8 @@ typedef struct row {
     const char *text, *expected;
 } row;
 
-static void check(const row *rows, size_t count) {
+static void check(const row *rows, size_t count)
+{
     size_t wrong = 0;
     for (size_t i = 0; i < count; i++)
         wrong += !reports(rows[i].text, rows[i].expected);
@@ -17,7 +18,8 @@ static void check(const row *rows, size_t count) {
 }
 #define CHECK(rows) check(rows, sizeof(rows) / sizeof(rows)[0])
 
-static void test_keys(void **state) {
+static void test_keys(void **state)
+{
     (void)state;
     static const row rows[] = {
         {SPHERE("centre: [0, 0, 0]"),
@@ -53,7 +55,8 @@ static void test_keys(void **state) {
     CHECK(rows);
 }
 
-static void test_missing(void **state) {
+static void test_missing(void **state)
+{
     (void)state;
     static const row rows[] = {
         {"objects:\n- sphere: {}\n", "1:1: the scene has no camera, expected a key such as"},
@@ -78,7 +81,8 @@ static void test_missing(void **state) {
     CHECK(rows);
 }
 
-static void test_values(void **state) {
+static void test_values(void **state)
+{
     (void)state;
     static const row rows[] = {
         {SPHERE("radius: -1"), "3:20: radius is -1, expected a number from 1e-20 to 1e12"},
@@ -149,7 +153,8 @@ static void test_values(void **state) {
     CHECK(rows);
 }
 
-static void test_shapes(void **state) {
+static void test_shapes(void **state)
+{
     (void)state;
     static const row rows[] = {
         {ONE "- plane: {normal: [0, 0, 0]}\n", "3:19: normal is [0, 0, 0], expected a direction"},
@@ -184,7 +189,8 @@ static void test_shapes(void **state) {
     CHECK(rows);
 }
 
-static void test_traps(void **state) {
+static void test_traps(void **state)
+{
     (void)state;
     static const row rows[] = {
         {"materials:\n  m:\n    color: #ff0000\n" SPHERE(""),
@@ -242,7 +248,8 @@ static void test_traps(void **state) {
     CHECK(rows);
 }
 
-static void test_whole_report(void **state) {
+static void test_whole_report(void **state)
+{
     (void)state;
     const char *text = "camera: {}\n"
                        "objects:\n"
@@ -264,7 +271,8 @@ static void test_whole_report(void **state) {
 }
 
 /* The caret stands below its character whatever is before it, and long lines are cut. */
-static void test_excerpts(void **state) {
+static void test_excerpts(void **state)
+{
     (void)state;
     assert_true(
         reports("{camera: {},\n\t\"objects\": [\t{\"x\": 1}]}\n",
@@ -288,7 +296,8 @@ static void test_excerpts(void **state) {
     free(report);
 }
 
-static void test_many(void **state) {
+static void test_many(void **state)
+{
     (void)state;
     char text[8000] = ONE;
     for (int i = 0; i < 150; i++)
@@ -303,7 +312,8 @@ static void test_many(void **state) {
     free(report);
 }
 
-int main(void) {
+int main(void)
+{
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_keys),     cmocka_unit_test(test_missing),
         cmocka_unit_test(test_values),   cmocka_unit_test(test_shapes),

@@ -7,7 +7,8 @@ typedef struct buffer {
     size_t length;
 } buffer;
 
-static buffer repeat(const char *before, const char *piece, size_t count, const char *after) {
+static buffer repeat(const char *before, const char *piece, size_t count, const char *after)
+{
     size_t size = strlen(piece);
     buffer b = {malloc(strlen(before) + size * count + strlen(after) + 1), strlen(before)};
     assert_non_null(b.text);
@@ -19,7 +20,8 @@ static buffer repeat(const char *before, const char *piece, size_t count, const 
     return b;
 }
 
-static void expect_in(buffer b, const char *fragment) {
+static void expect_in(buffer b, const char *fragment)
+{
     char *report = parse_bad(b.text, b.length);
     if (!strstr(report, fragment))
         print_error("expected: %s\ngot:\n%.2000s\n", fragment, report);
@@ -29,7 +31,8 @@ static void expect_in(buffer b, const char *fragment) {
     free(b.text);
 }
 
-static void test_bytes(void **state) {
+static void test_bytes(void **state)
+{
     (void)state;
     static const struct {
         const char *text;
@@ -64,7 +67,8 @@ static void test_bytes(void **state) {
     }
 }
 
-static void test_nesting(void **state) {
+static void test_nesting(void **state)
+{
     (void)state;
     const char *expected = "lists and mappings nest more than 128 levels deep";
     expect_in(repeat("", "[", 100000, ""), expected);
@@ -80,7 +84,8 @@ static void test_nesting(void **state) {
     expect_in(b, "groups nest more than 32 deep");
 }
 
-static void test_sizes(void **state) {
+static void test_sizes(void **state)
+{
     (void)state;
     expect_in(repeat("a: ", "x", 100000000, ""), "more than the limit of 16777216 (16 MiB)");
     expect_in(repeat("a: ", "x", 16000000, "\n"), "s.yaml:1:1: unknown key \"a\"");
@@ -94,7 +99,8 @@ static void test_sizes(void **state) {
               "expected a number from 1e-20 to 1e12");
 }
 
-static void test_bombs(void **state) {
+static void test_bombs(void **state)
+{
     (void)state;
     const char *text = "a: &a [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n"
                        "b: &b [*a, *a, *a, *a, *a, *a, *a, *a, *a, *a]\n"
@@ -119,14 +125,16 @@ static void test_bombs(void **state) {
 }
 
 /* libfyaml leaks the text of a quoted scalar of many pieces; a sanitizer watches here. */
-static void test_many_pieces(void **state) {
+static void test_many_pieces(void **state)
+{
     (void)state;
     expect_in(repeat("'", "''", 1000, "': 1\n"), "s.yaml:1:1: unknown key \"'''''");
     expect_in(repeat("\"", "\\x41", 1000, "\": 1\n"), "s.yaml:1:1: unknown key \"AAAAA");
 }
 
 /* Many names, wrong and right, do not take quadratic time. */
-static void test_many_names(void **state) {
+static void test_many_names(void **state)
+{
     (void)state;
     size_t size = 3000000, used = 0;
     char *text = malloc(size);
@@ -143,7 +151,8 @@ static void test_many_names(void **state) {
     free(text);
 }
 
-int main(void) {
+int main(void)
+{
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_bytes),       cmocka_unit_test(test_nesting),
         cmocka_unit_test(test_sizes),       cmocka_unit_test(test_bombs),

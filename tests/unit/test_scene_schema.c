@@ -6,7 +6,8 @@
 
 #include <jansson.h>
 
-static void test_tables(void **state) {
+static void test_tables(void **state)
+{
     (void)state;
     const lr_record *record;
     for (uint32_t i = 0; (record = lr_record_at(i)) != NULL; i++) {
@@ -24,7 +25,8 @@ static void test_tables(void **state) {
 }
 
 /* Finds an object of the schema whose properties are the record's keys, anywhere below node. */
-static json_t *find_record(json_t *node, const lr_record *record) {
+static json_t *find_record(json_t *node, const lr_record *record)
+{
     const char *key;
     size_t index;
     json_t *child, *found = NULL;
@@ -45,7 +47,8 @@ static json_t *find_record(json_t *node, const lr_record *record) {
     return found;
 }
 
-static void test_schema(void **state) {
+static void test_schema(void **state)
+{
     (void)state;
     char *text = lr_scene_schema();
     assert_non_null(text);
@@ -84,7 +87,8 @@ static void test_schema(void **state) {
 }
 
 /* Whether some table row of the reference says the field's key, default and meaning. */
-static bool is_documented(const char *docs, const lr_field *field) {
+static bool is_documented(const char *docs, const lr_field *field)
+{
     char start[64], fallback[LR_EXPECTED_MAX], cell[LR_EXPECTED_MAX + 8];
     snprintf(start, sizeof start, "\n| `%s` |", field->name);
     lr_field_default(field, fallback);
@@ -101,7 +105,8 @@ static bool is_documented(const char *docs, const lr_field *field) {
     return false;
 }
 
-static void test_docs(void **state) {
+static void test_docs(void **state)
+{
     (void)state;
     char *docs;
     size_t size;
@@ -120,7 +125,8 @@ static void test_docs(void **state) {
 }
 
 /* The scene in the reference is one. */
-static void test_docs_example(void **state) {
+static void test_docs_example(void **state)
+{
     (void)state;
     char *docs;
     size_t size;
@@ -136,7 +142,8 @@ static void test_docs_example(void **state) {
     free(docs);
 }
 
-int main(void) {
+int main(void)
+{
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_tables),
         cmocka_unit_test(test_schema),

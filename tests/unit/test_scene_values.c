@@ -15,7 +15,8 @@
 
 #define ONE "camera: {}\nobjects:\n"
 
-static void test_defaults(void **state) {
+static void test_defaults(void **state)
+{
     (void)state;
     lr_scene *s = parse_good(ONE "- sphere: {}\n");
     assert_string_equal(s->source, "s.yaml");
@@ -67,7 +68,8 @@ static void test_defaults(void **state) {
     lr_scene_destroy(s);
 }
 
-static void test_top_level(void **state) {
+static void test_top_level(void **state)
+{
     (void)state;
     lr_scene *s = parse_good(
         "lavaray: 1\nup: [0, 0, 2]\nambient: [0.1, 0.2, 0.3]\nbackground: black\n"
@@ -101,7 +103,8 @@ static void test_top_level(void **state) {
     lr_scene_destroy(s);
 }
 
-static void test_materials(void **state) {
+static void test_materials(void **state)
+{
     (void)state;
     lr_scene *s = parse_good(
         "camera: {}\nmaterials:\n"
@@ -159,7 +162,8 @@ static void test_materials(void **state) {
     lr_scene_destroy(s);
 }
 
-static void test_lights(void **state) {
+static void test_lights(void **state)
+{
     (void)state;
     lr_scene *s =
         parse_good("camera: {}\nlights:\n- point: {position: [1, 2, 3]}\n"
@@ -195,7 +199,8 @@ static void test_lights(void **state) {
     lr_scene_destroy(s);
 }
 
-static void test_objects(void **state) {
+static void test_objects(void **state)
+{
     (void)state;
     lr_scene *s =
         parse_good(ONE "- sphere: {center: [1, 2, 3], radius: 4, shadow: false}\n"
@@ -246,7 +251,8 @@ static void test_objects(void **state) {
         assert_vec(p, a, b, c);                                                                    \
     } while (0)
 
-static void test_transforms(void **state) {
+static void test_transforms(void **state)
+{
     (void)state;
     lr_scene *s = parse_good(
         ONE "- sphere: {translate: [1, 2, 3]}\n"
@@ -281,7 +287,8 @@ static void test_transforms(void **state) {
     lr_scene_destroy(s);
 }
 
-static double radius_of(const char *number) {
+static double radius_of(const char *number)
+{
     char text[200];
     snprintf(text, sizeof text, ONE "- sphere: {radius: %s}\n", number);
     lr_scene *s = parse_good(text);
@@ -290,7 +297,8 @@ static double radius_of(const char *number) {
     return radius;
 }
 
-static void test_numbers(void **state) {
+static void test_numbers(void **state)
+{
     (void)state;
     /* The decimal point does not follow the locale. */
     setlocale(LC_ALL, "de_DE.UTF-8");
@@ -305,7 +313,8 @@ static void test_numbers(void **state) {
     setlocale(LC_ALL, "C");
 }
 
-static void test_colors(void **state) {
+static void test_colors(void **state)
+{
     (void)state;
     for (unsigned i = 0; i < 256; i++) {
         double c = i / 255.0;
@@ -333,7 +342,8 @@ static void test_colors(void **state) {
     assert_false(lr_color_from_text("reddish", 7, &c));
 }
 
-static void test_forms(void **state) {
+static void test_forms(void **state)
+{
     (void)state;
     static const char *const forms[] = {
         "{\"camera\": {\"from\": [0, 1, 5]},\n\t\"objects\": [\n\t\t{\"sphere\": {}}\n\t]\n}\n",
@@ -350,7 +360,8 @@ static void test_forms(void **state) {
     lr_scene_destroy(NULL);
 }
 
-static void test_load(void **state) {
+static void test_load(void **state)
+{
     (void)state;
     lr_scene *scene;
     char *report;
@@ -366,7 +377,8 @@ static void test_load(void **state) {
     lr_scene_destroy(scene);
 }
 
-int main(void) {
+int main(void)
+{
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_defaults),  cmocka_unit_test(test_top_level),
         cmocka_unit_test(test_materials), cmocka_unit_test(test_lights),

@@ -9,7 +9,9 @@ typedef struct violation {
 } violation;
 
 #define EXTENDED(name, body)                                                                       \
-    { "built-in", "GLSL.std.450 " name, body, NULL, 0, 0, false }
+    {                                                                                              \
+        "built-in", "GLSL.std.450 " name, body, NULL, 0, 0, false                                  \
+    }
 #define FLOAT16 "#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require"
 #define ATOMIC_FLOAT "#extension GL_EXT_shader_atomic_float : require"
 #define SUBGROUP "#extension GL_KHR_shader_subgroup_arithmetic : require"
@@ -189,25 +191,29 @@ static const violation violations[] = {
      .is_module_scope = true},
 };
 
-static lr_spirv compile_snippet(const char *globals, const char *body) {
+static lr_spirv compile_snippet(const char *globals, const char *body)
+{
     char source[4096];
     snprintf(source, sizeof source, SPIRV_TEMPLATE, globals ? globals : "", body);
     return spirv_compile(source);
 }
 
-static void replace_opcode(lr_spirv *module, uint32_t from, uint32_t to) {
+static void replace_opcode(lr_spirv *module, uint32_t from, uint32_t to)
+{
     for (size_t at = 5; at < module->count; at += module->words[at] >> 16)
         if ((module->words[at] & 0xffff) == from)
             module->words[at] = (module->words[at] & 0xffff0000) | to;
 }
 
-static void replace_decoration(lr_spirv *module, uint32_t from, uint32_t to) {
+static void replace_decoration(lr_spirv *module, uint32_t from, uint32_t to)
+{
     for (size_t at = 5; at < module->count; at += module->words[at] >> 16)
         if ((module->words[at] & 0xffff) == 71 && module->words[at + 2] == from)
             module->words[at + 2] = to;
 }
 
-static void test_violations(void **state) {
+static void test_violations(void **state)
+{
     (void)state;
     unsigned wrong = 0;
     for (size_t i = 0; i < sizeof violations / sizeof *violations; i++) {
@@ -239,7 +245,8 @@ static void test_violations(void **state) {
     assert_int_equal(wrong, 0);
 }
 
-static void test_missing_no_contraction(void **state) {
+static void test_missing_no_contraction(void **state)
+{
     (void)state;
     static const char *const bodies[][2] = {
         {"OpFAdd", "f[i] = a.x + b.x;"},
@@ -311,7 +318,8 @@ static const char *const allowed_body =
     "if (any(m) && !all(m) && all(not(m))) c = mix(a, b, m);"
     "f[i] = twice(c.x) + (m.x ? c.y : c.z); u[i] = n + MASK + DOUBLED; s[i] = k & ~3 | 1;";
 
-static void test_allowed(void **state) {
+static void test_allowed(void **state)
+{
     (void)state;
     lr_spirv module = compile_snippet(allowed_globals, allowed_body), decorated;
     lr_error error = {0};
@@ -323,7 +331,8 @@ static void test_allowed(void **state) {
     lr_spirv_free(&decorated);
 }
 
-static void test_names(void **state) {
+static void test_names(void **state)
+{
     (void)state;
     lr_spirv module = compile_snippet(NULL, "f[i] = a.x / b.x;");
     replace_opcode(&module, 5, 0); /* OpName to something that is no name */
@@ -336,7 +345,8 @@ static void test_names(void **state) {
     lr_spirv_free(&module);
 }
 
-int main(void) {
+int main(void)
+{
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_violations),
         cmocka_unit_test(test_missing_no_contraction),

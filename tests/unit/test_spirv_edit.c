@@ -3,14 +3,16 @@
 
 enum { NO_CONTRACTION = 42, OP_DECORATE = 71 };
 
-static lr_spirv compile_snippet(const char *globals, const char *body) {
+static lr_spirv compile_snippet(const char *globals, const char *body)
+{
     char source[4096];
     snprintf(source, sizeof source, SPIRV_TEMPLATE, globals, body);
     return spirv_compile(source);
 }
 
 /* The number of NoContraction decorations; fails when an id has two. */
-static unsigned count_decorations(const lr_spirv *module) {
+static unsigned count_decorations(const lr_spirv *module)
+{
     unsigned found = 0;
     for (size_t at = 5; at < module->count; at += module->words[at] >> 16) {
         const uint32_t *word = module->words + at;
@@ -23,7 +25,8 @@ static unsigned count_decorations(const lr_spirv *module) {
     return found;
 }
 
-static lr_spirv decorate(const lr_spirv *module) {
+static lr_spirv decorate(const lr_spirv *module)
+{
     lr_spirv decorated;
     lr_error error = {0};
     if (lr_spirv_decorate(module->words, module->count, &decorated, &error) != LR_OK)
@@ -31,7 +34,8 @@ static lr_spirv decorate(const lr_spirv *module) {
     return decorated;
 }
 
-static void test_decorate(void **state) {
+static void test_decorate(void **state)
+{
     (void)state;
     /* One of each: add, subtract, multiply, negate, vector times scalar. */
     lr_spirv module = compile_snippet("", "f[i] = a.x + b.x * a.y - (-b.y) + (a * b.z).x;");
@@ -49,7 +53,8 @@ static void test_decorate(void **state) {
 }
 
 /* What the check refuses is decorated all the same: the two do not rely on each other. */
-static void test_decorate_refused(void **state) {
+static void test_decorate_refused(void **state)
+{
     (void)state;
     lr_spirv module = compile_snippet(
         "", "f[i] = a.x / b.x + dot(a, b) + (mat3(a, b, a) * b).x + mod(a.y, b.y);");
@@ -59,7 +64,8 @@ static void test_decorate_refused(void **state) {
     lr_spirv_free(&decorated);
 }
 
-static void test_precise(void **state) {
+static void test_precise(void **state)
+{
     (void)state;
     lr_spirv module = compile_snippet(
         "", "precise float x = a.x * b.x + a.y; f[i] = x; f[i + 1] = a.z * b.z + b.y;");
@@ -72,7 +78,8 @@ static void test_precise(void **state) {
     lr_spirv_free(&decorated);
 }
 
-static void test_box(void **state) {
+static void test_box(void **state)
+{
     (void)state;
     lr_spirv module = compile_snippet("bool box_test(vec3 a) { return a.x * a.y + a.z > 0; }",
                                       "f[i] = box_test(a) ? 1.0 : 0.0;");
@@ -101,7 +108,8 @@ static void test_box(void **state) {
     lr_spirv_free(&module);
 }
 
-static void check_modes(const lr_spirv *module, const lr_spirv_modes *modes, unsigned entries) {
+static void check_modes(const lr_spirv *module, const lr_spirv_modes *modes, unsigned entries)
+{
     static const struct {
         uint32_t capability, mode;
     } table[] = {{4464, 4459}, {4465, 4460}, {4466, 4461}, {4467, 4462}};
@@ -123,7 +131,8 @@ static void check_modes(const lr_spirv *module, const lr_spirv_modes *modes, uns
     assert_int_equal(spirv_count(module, extension, 7), any);
 }
 
-static lr_spirv add_modes(const lr_spirv *module, const lr_spirv_modes *modes) {
+static lr_spirv add_modes(const lr_spirv *module, const lr_spirv_modes *modes)
+{
     lr_spirv changed;
     lr_error error = {0};
     if (lr_spirv_add_modes(module->words, module->count, modes, &changed, &error) != LR_OK)
@@ -131,7 +140,8 @@ static lr_spirv add_modes(const lr_spirv *module, const lr_spirv_modes *modes) {
     return changed;
 }
 
-static void test_modes(void **state) {
+static void test_modes(void **state)
+{
     (void)state;
     lr_spirv module = compile_snippet("", "f[i] = a.x * b.x;"), decorated = decorate(&module);
     for (unsigned bits = 0; bits < 16; bits++) {
@@ -157,7 +167,8 @@ static void test_modes(void **state) {
     lr_spirv_free(&decorated);
 }
 
-static void test_modes_of_two_entry_points(void **state) {
+static void test_modes_of_two_entry_points(void **state)
+{
     (void)state;
     static const char *const assembly = "OpCapability Shader\n"
                                         "OpMemoryModel Logical GLSL450\n"
@@ -192,7 +203,8 @@ static void test_modes_of_two_entry_points(void **state) {
 
 /* Runs everything on a copy of exactly the module's size, so that a sanitizer sees any read behind
  * it. Whatever is returned, success comes with a module and failure with a message. */
-static void survive(const uint32_t *words, size_t count) {
+static void survive(const uint32_t *words, size_t count)
+{
     uint32_t *copy = malloc(count ? count * sizeof *words : 1);
     if (count)
         memcpy(copy, words, count * sizeof *words);
@@ -212,13 +224,15 @@ static void survive(const uint32_t *words, size_t count) {
     free(copy);
 }
 
-static uint32_t random_word(uint32_t *seed) {
+static uint32_t random_word(uint32_t *seed)
+{
     *seed = *seed * 747796405u + 2891336453u;
     uint32_t word = ((*seed >> (*seed >> 28) >> 4) ^ *seed) * 277803737u;
     return word >> 22 ^ word;
 }
 
-static void test_corruption(void **state) {
+static void test_corruption(void **state)
+{
     (void)state;
     lr_spirv module = compile_snippet(
         "bool box_test(vec3 a) { return a.x * a.y + a.z > 0; }",
@@ -259,7 +273,8 @@ static void test_corruption(void **state) {
     lr_spirv_free(&decorated);
 }
 
-static void expect_malformed(const uint32_t *words, size_t count, const char *expected) {
+static void expect_malformed(const uint32_t *words, size_t count, const char *expected)
+{
     lr_error error = {0};
     assert_int_equal(lr_spirv_check(words, count, &error), LR_ERROR_ARGUMENT);
     if (!strstr(error.message, expected))
@@ -267,7 +282,8 @@ static void expect_malformed(const uint32_t *words, size_t count, const char *ex
     survive(words, count);
 }
 
-static void test_malformed(void **state) {
+static void test_malformed(void **state)
+{
     (void)state;
     enum { MAGIC = 0x07230203, FNEGATE = 4 << 16 | 127, NAME = 3 << 16 | 5 };
     expect_malformed(NULL, 0, "fewer than the header");
@@ -296,20 +312,23 @@ static void test_malformed(void **state) {
     lr_spirv_free(&decorated);
 }
 
-static int embed(const char *arguments) {
+static int embed(const char *arguments)
+{
     char command[512];
     snprintf(command, sizeof command, "%s/embed_shader %s >%s/said 2>&1", BINARY_DIR, arguments,
              spirv_folder);
     return system(command);
 }
 
-static void read_text(const char *path, char **text) {
+static void read_text(const char *path, char **text)
+{
     size_t size;
     if (lr_file_read(path, 1 << 24, text, &size, NULL) != LR_OK)
         fail_msg("%s cannot be read", path);
 }
 
-static void test_embed_shader(void **state) {
+static void test_embed_shader(void **state)
+{
     (void)state;
     if (access(BINARY_DIR "/embed_shader", X_OK) != 0) {
         print_message("embed_shader is not built\n");
@@ -365,7 +384,8 @@ static void test_embed_shader(void **state) {
     assert_int_not_equal(embed(""), 0);
 }
 
-int main(void) {
+int main(void)
+{
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_decorate),     cmocka_unit_test(test_decorate_refused),
         cmocka_unit_test(test_precise),      cmocka_unit_test(test_box),
