@@ -11,17 +11,27 @@
 enum {
     OP_NAME = 5,
     OP_MEMBER_NAME = 6,
+    OP_LINE = 8,
+    OP_ENTRY_POINT = 15,
     OP_CONSTANT_TRUE = 41,
     OP_CONSTANT_FALSE = 42,
     OP_SPEC_CONSTANT_TRUE = 48,
     OP_SPEC_CONSTANT_FALSE = 49,
+    OP_SPEC_CONSTANT_OP = 52,
     OP_FUNCTION = 54,
     OP_FUNCTION_END = 56,
+    OP_FUNCTION_CALL = 57,
+    OP_STORE = 62,
+    OP_COPY_MEMORY = 63,
     OP_DECORATE = 71,
     OP_MEMBER_DECORATE = 72,
+    OP_IMAGE_WRITE = 99,
     OP_LOGICAL_OR = 166,
     OP_LOGICAL_AND = 167,
     OP_LOGICAL_NOT = 168,
+    OP_CONTROL_BARRIER = 224,
+    OP_MEMORY_BARRIER = 225,
+    OP_ATOMIC_STORE = 228,
     OP_PHI = 245,
     OP_LOOP_MERGE = 246,
     OP_SELECTION_MERGE = 247,
@@ -42,6 +52,7 @@ typedef struct folding {
     unsigned char *truths; /* by id: what is known of a bool */
     bool *reachable;       /* by label */
     uint32_t *ends;        /* by label: where its terminator stands */
+    bool *live;            /* by function: some entry point calls it */
     bool *removed;         /* by id: defined in a block that is gone */
     const uint32_t *constants;
     uint32_t constant_count;
@@ -93,10 +104,24 @@ static truth fold_phi(const folding *f, const uint32_t *w, uint32_t label)
     return result;
 }
 
+static truth fold_logic(uint32_t opcode, truth a, truth b)
+{
+    switch (opcode) {
+    case OP_LOGICAL_NOT:
+        return a == UNKNOWN ? UNKNOWN : (a == TRUE ? FALSE : TRUE);
+    case OP_LOGICAL_AND:
+        return a == FALSE || b == FALSE ? FALSE : (a == TRUE && b == TRUE ? TRUE : UNKNOWN);
+    case OP_LOGICAL_OR:
+        return a == TRUE || b == TRUE ? TRUE : (a == FALSE && b == FALSE ? FALSE : UNKNOWN);
+    default:
+        return UNKNOWN;
+    }
+}
+
 static truth fold(const folding *f, const uint32_t *w, uint32_t label)
 {
-    truth a, b;
-    switch (spirv_opcode(w[0])) {
+    uint32_t length = spirv_length(w[0]), opcode = spirv_opcode(w[0]);
+    switch (opcode) {
     case OP_CONSTANT_TRUE:
         return TRUE;
     case OP_CONSTANT_FALSE:
@@ -104,24 +129,19 @@ static truth fold(const folding *f, const uint32_t *w, uint32_t label)
     case OP_SPEC_CONSTANT_TRUE:
     case OP_SPEC_CONSTANT_FALSE: {
         uint32_t spec = f->spec_ids[w[2]];
-        bool value = spirv_opcode(w[0]) == OP_SPEC_CONSTANT_TRUE;
+        bool value = opcode == OP_SPEC_CONSTANT_TRUE;
         if (spec && spec - 1 < f->constant_count)
             value = f->constants[spec - 1] != 0;
         return value ? TRUE : FALSE;
     }
-    case OP_LOGICAL_NOT:
-        a = f->truths[w[3]];
-        return a == UNKNOWN ? UNKNOWN : (a == TRUE ? FALSE : TRUE);
-    case OP_LOGICAL_AND:
-        a = f->truths[w[3]], b = f->truths[w[4]];
-        return a == FALSE || b == FALSE ? FALSE : (a == TRUE && b == TRUE ? TRUE : UNKNOWN);
-    case OP_LOGICAL_OR:
-        a = f->truths[w[3]], b = f->truths[w[4]];
-        return a == TRUE || b == TRUE ? TRUE : (a == FALSE && b == FALSE ? FALSE : UNKNOWN);
+    case OP_SPEC_CONSTANT_OP: /* the operation in word 3, then its operands */
+        return fold_logic(w[3], length > 4 ? f->truths[w[4]] : UNKNOWN,
+                          length > 5 ? f->truths[w[5]] : UNKNOWN);
     case OP_PHI:
         return fold_phi(f, w, label);
     default:
-        return UNKNOWN;
+        return fold_logic(opcode, length > 3 ? f->truths[w[3]] : UNKNOWN,
+                          length > 4 ? f->truths[w[4]] : UNKNOWN);
     }
 }
 
@@ -154,6 +174,7 @@ static void find_reachable(folding *f)
         case OP_CONSTANT_FALSE:
         case OP_SPEC_CONSTANT_TRUE:
         case OP_SPEC_CONSTANT_FALSE:
+        case OP_SPEC_CONSTANT_OP:
             f->truths[w[2]] = fold(f, w, label);
             break;
         case OP_LOOP_MERGE:
@@ -220,6 +241,9 @@ static size_t emit(const folding *f, size_t word, uint32_t label, uint32_t *out)
     }
     case OP_SPEC_CONSTANT_TRUE:
     case OP_SPEC_CONSTANT_FALSE:
+    case OP_SPEC_CONSTANT_OP:
+        if (f->truths[w[2]] == UNKNOWN)
+            break;
         out[0] = 3u << 16 | (f->truths[w[2]] == TRUE ? OP_CONSTANT_TRUE : OP_CONSTANT_FALSE);
         out[1] = w[1];
         out[2] = w[2];
@@ -231,41 +255,83 @@ static size_t emit(const folding *f, size_t word, uint32_t label, uint32_t *out)
     return length;
 }
 
-/* Ids that only removed blocks define; names and decorations of them must go too. Every result that
- * has a type stands in word 2, and what has none (labels) in word 1; a few instructions without a
- * result are mistaken for ones with, which does no harm: their operands are defined elsewhere. */
+/* Walks the instructions that are left: *function and *label are where `word` stands, and the
+ * result tells whether it is in a block or function that is gone. */
+static bool is_gone(const folding *f, size_t word, uint32_t *function, uint32_t *label)
+{
+    const uint32_t *w = at(f, word);
+    switch (spirv_opcode(w[0])) {
+    case OP_FUNCTION:
+        *function = w[2];
+        *label = 0;
+        break;
+    case OP_LABEL:
+        *label = w[1];
+        break;
+    case OP_FUNCTION_END: {
+        bool gone = !f->live[*function];
+        *function = *label = 0;
+        return gone;
+    }
+    default:
+        break;
+    }
+    return *function && (!f->live[*function] || (*label && !f->reachable[*label]));
+}
+
+/* Functions that are called, directly or not, from the blocks that are left. */
+static void find_live(folding *f)
+{
+    bool more = true;
+    while (more) {
+        more = false;
+        uint32_t function = 0, label = 0;
+        SPIRV_EACH(word, f->words, f->count)
+        {
+            const uint32_t *w = at(f, word);
+            uint32_t opcode = spirv_opcode(w[0]), used = 0;
+            if (opcode == OP_ENTRY_POINT)
+                used = w[2];
+            else if (!is_gone(f, word, &function, &label) && opcode == OP_FUNCTION_CALL)
+                used = w[3];
+            if (used && !f->live[used])
+                f->live[used] = more = true;
+        }
+    }
+}
+
+/* The id that an instruction of a function defines, 0 for none. */
+static uint32_t result_of(const uint32_t *w)
+{
+    switch (spirv_opcode(w[0])) {
+    case OP_LABEL:
+        return w[1];
+    case OP_LINE:
+    case OP_STORE:
+    case OP_COPY_MEMORY:
+    case OP_IMAGE_WRITE:
+    case OP_CONTROL_BARRIER:
+    case OP_MEMORY_BARRIER:
+    case OP_ATOMIC_STORE:
+    case OP_LOOP_MERGE:
+    case OP_SELECTION_MERGE:
+    case OP_BRANCH_CONDITIONAL:
+    case OP_SWITCH:
+        return 0;
+    default: /* behind the result's type; what else has no result is shorter */
+        return spirv_length(w[0]) > 2 ? w[2] : 0;
+    }
+}
+
+/* Names and decorations of ids that are gone must go too. */
 static void find_removed(folding *f)
 {
-    bool inside = false, gone = false;
+    uint32_t function = 0, label = 0;
     SPIRV_EACH(word, f->words, f->count)
     {
-        const uint32_t *w = at(f, word);
-        uint32_t opcode = spirv_opcode(w[0]), length = spirv_length(w[0]);
-        if (opcode == OP_LABEL)
-            inside = true, gone = !f->reachable[w[1]];
-        if (opcode == OP_FUNCTION_END)
-            inside = false;
-        if (!inside || !gone)
-            continue;
-        if (opcode == OP_LABEL)
-            f->removed[w[1]] = true;
-        else if (length > 2 && w[2] < f->bound)
-            f->removed[w[2]] = true;
-    }
-    inside = gone = false;
-    SPIRV_EACH(word, f->words, f->count)
-    {
-        const uint32_t *w = at(f, word);
-        uint32_t opcode = spirv_opcode(w[0]), length = spirv_length(w[0]);
-        if (opcode == OP_LABEL)
-            inside = true, gone = !f->reachable[w[1]];
-        if (opcode == OP_NAME || opcode == OP_MEMBER_NAME || opcode == OP_DECORATE ||
-            opcode == OP_MEMBER_DECORATE || (inside && gone))
-            continue;
-        if (length > 1 && w[1] < f->bound)
-            f->removed[w[1]] = false;
-        if (length > 2 && w[2] < f->bound)
-            f->removed[w[2]] = false;
+        uint32_t id = is_gone(f, word, &function, &label) ? result_of(at(f, word)) : 0;
+        if (id && id < f->bound)
+            f->removed[id] = true;
     }
 }
 
@@ -287,29 +353,27 @@ lr_status lr_spirv_specialize(const uint32_t *words, size_t count, const uint32_
         .truths = lr_alloc(bound, sizeof *f.truths),
         .reachable = lr_alloc(bound, sizeof *f.reachable),
         .ends = lr_alloc(bound, sizeof *f.ends),
+        .live = lr_alloc(bound, sizeof *f.live),
         .removed = lr_alloc(bound, sizeof *f.removed),
         .constants = constants,
         .constant_count = constant_count,
     };
     out->words = lr_alloc(count, sizeof *out->words);
-    if (!f.spec_ids || !f.truths || !f.reachable || !f.ends || !f.removed || !out->words) {
+    if (!f.spec_ids || !f.truths || !f.reachable || !f.ends || !f.live || !f.removed ||
+        !out->words) {
         status = lr_fail(error, LR_ERROR_MEMORY, "out of memory for a SPIR-V module");
         goto done;
     }
     find_reachable(&f);
+    find_live(&f);
     find_removed(&f);
     memcpy(out->words, words, SPIRV_HEADER_WORDS * sizeof *words);
     out->count = SPIRV_HEADER_WORDS;
-    bool inside = false;
-    uint32_t label = 0;
+    uint32_t function = 0, label = 0;
     SPIRV_EACH(word, words, count)
     {
         uint32_t opcode = spirv_opcode(words[word]);
-        if (opcode == OP_LABEL)
-            inside = true, label = words[word + 1];
-        if (opcode == OP_FUNCTION_END)
-            inside = false;
-        if (inside && !f.reachable[label])
+        if (is_gone(&f, word, &function, &label))
             continue;
         bool annotates = opcode == OP_NAME || opcode == OP_MEMBER_NAME || opcode == OP_DECORATE ||
                          opcode == OP_MEMBER_DECORATE;
@@ -324,6 +388,7 @@ done:
     free(f.truths);
     free(f.reachable);
     free(f.ends);
+    free(f.live);
     free(f.removed);
     if (status)
         lr_spirv_free(out);
