@@ -7,8 +7,8 @@
 #include "scatter.spv.h"
 #include "trace.spv.h"
 
-/* Rays times primitives that one dispatch may test: about 50 ms on two slow cores. */
-#define TESTS_PER_DISPATCH (1u << 25)
+/* Rays, towards lights too, times primitives that one pass may test: about 50 ms on two cores. */
+#define TESTS_PER_PASS (1u << 24)
 
 /* lavapipe of Mesa 22.3 silently ends all loops of an invocation after some 65,000 iterations
  * (docs/drivers.md); this stays far below. */
@@ -32,11 +32,12 @@ static uint32_t groups_for(uint32_t items, uint32_t size)
     return (items + size - 1) / size;
 }
 
-/* How the work is cut up: dispatches that stay short whatever the number of primitives. */
+/* How the work is cut up: passes that stay short whatever the number of primitives and lights. */
 static void plan(lr_wavefront *w, const lr_render_options *options)
 {
-    uint32_t cost = w->scene->primitive_count + 8;
-    uint32_t chunk = at_least(at_most(TESTS_PER_DISPATCH / cost, CHUNK_DEFAULT), CHUNK_MIN);
+    uint32_t primitives = w->scene->primitive_count + 8, lights = w->scene->light_count;
+    uint32_t fitting = TESTS_PER_PASS / primitives / (1 + lights);
+    uint32_t chunk = at_least(at_most(fitting, CHUNK_DEFAULT), CHUNK_MIN);
     w->tile_size = 128;
     while (w->tile_size > 8 && w->tile_size * w->tile_size > chunk)
         w->tile_size /= 2;
@@ -45,9 +46,8 @@ static void plan(lr_wavefront *w, const lr_render_options *options)
     if (options->tile_size)
         w->tile_size = at_least(at_most(options->tile_size, 1024), 1);
     w->chunk_rays = at_least(chunk, w->tile_size * w->tile_size);
-    uint32_t lights = at_least(
-        at_most(TESTS_PER_DISPATCH / cost / w->chunk_rays, LOOPS_PER_INVOCATION / cost), 1);
-    w->lights_at_once = at_most(lights, at_least(w->scene->light_count, 1));
+    uint32_t at_once = at_least(LOOPS_PER_INVOCATION / primitives, 1);
+    w->lights_at_once = at_most(at_once, at_least(lights, 1));
 }
 
 static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *error)
