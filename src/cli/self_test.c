@@ -95,13 +95,13 @@ enum { SCENE_COUNT = sizeof scenes / sizeof *scenes };
 /* The hashes that every exact device has, in the order of the scenes. A change here is a change of
  * what all pictures look like, and goes into the change log. An empty one is not settled yet. */
 static const char *const expected[SCENE_COUNT] = {
-    "", /* spheres */
-    "", /* checkers */
-    "", /* glass */
-    "", /* faint */
-    "", /* tiny */
-    "", /* lights */
-    "", /* shapes */
+    "b771ec12e3a58d5a3a726ff87b1f940da9e67ae40a0f0f639b5688dad377d145", /* spheres */
+    "7a286bb23ce1ba796fd06e88df0ef53309da3baa6083bd767639ee62db281166", /* checkers */
+    "87ef6d0832a5541bb9b6a0b790d660e3e359733f850651ca92ee7a1920511d86", /* glass */
+    "7d3f3bbd8d9c51a3f5b73b2d390e43b68b73da832d644964d2ad4b146a16a328", /* faint */
+    "8dc7789618aef600fb10f67856ed6bad4a235c9b8f6396fa9c628b479d0625a1", /* tiny */
+    "93c8666d663aac58411eeed7664d431f0b4d292c1a25e3330effa7848291791f", /* lights */
+    "da19bcec533bc29930ee39808fd60007e1d133f3beebba266ddaa3b83b330e79", /* shapes */
 };
 
 /* Renders one scene; false after printing why it cannot be. */
