@@ -14,7 +14,7 @@
  * (docs/drivers.md); this stays far below. */
 #define LOOPS_PER_INVOCATION 16384
 
-#define CHUNK_DEFAULT 65536
+#define CHUNK_DEFAULT 262144
 #define CHUNK_MIN 1024
 
 static uint32_t at_least(uint32_t value, uint32_t least)
@@ -38,7 +38,7 @@ static void plan(lr_wavefront *w, const lr_render_options *options)
     uint32_t primitives = w->scene->primitive_count + 8, lights = w->scene->light_count;
     uint32_t fitting = TESTS_PER_PASS / primitives / (1 + lights);
     uint32_t chunk = at_least(at_most(fitting, CHUNK_DEFAULT), CHUNK_MIN);
-    w->tile_size = 128;
+    w->tile_size = 256;
     while (w->tile_size > 8 && w->tile_size * w->tile_size > chunk)
         w->tile_size /= 2;
     if (options->chunk_rays)
