@@ -74,7 +74,7 @@ typedef struct kernel {
     size_t in_size;
     void *out; /* comes from the storage buffer at binding 1 */
     size_t out_size;
-    uint32_t push; /* a push constant of one word */
+    uint32_t which; /* the first word of the push constants */
     uint32_t groups;
 } kernel;
 
@@ -83,8 +83,9 @@ static inline void run_kernel(lr_device *device, const kernel *k)
     const VkDescriptorType types[] = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
     lr_layout_desc layout_desc = {
-        .types = types, .binding_count = 2, .push_size = 4, .set_count = 1};
+        .types = types, .binding_count = 2, .push_size = sizeof(struct gpu_work), .set_count = 1};
     lr_program_desc program_desc = {.words = k->words, .word_count = k->word_count};
+    struct gpu_work push = {.tile_x = k->which};
     lr_layout layout;
     lr_buffer in, out, back;
     VkPipeline program;
@@ -98,7 +99,7 @@ static inline void run_kernel(lr_device *device, const kernel *k)
     MUST(lr_program_create(device, &layout, &program_desc, &program, error));
     MUST(lr_buffer_upload(device, &in, k->in, k->in_size, error));
     MUST(lr_commands_begin(device, error));
-    lr_commands_dispatch(device, &layout, program, set, &k->push, k->groups, 1, 1);
+    lr_commands_dispatch(device, &layout, program, set, &push, k->groups, 1, 1);
     lr_commands_barrier(device);
     lr_commands_copy(device, &out, &back, k->out_size);
     MUST(lr_commands_finish(device, error));

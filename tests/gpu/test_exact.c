@@ -24,7 +24,7 @@ static void run(void **state, uint32_t which)
                                  .in_size = sizeof given,
                                  .out = found,
                                  .out_size = sizeof found,
-                                 .push = which,
+                                 .which = which,
                                  .groups = COUNT / LR_GROUP_SIZE});
 }
 
