@@ -1,7 +1,7 @@
 /* lavaray: renders a scene to the same bytes on every Vulkan device.
  *
- * The library never prints, never exits and keeps no global state. Functions that can fail return an
- * lr_status and describe the cause in the lr_error they are given (which may be NULL). Destroy
+ * The library never prints, never exits and keeps no global state. Functions that can fail return
+ * an lr_status and describe the cause in the lr_error they are given (which may be NULL). Destroy
  * functions accept NULL. Descriptor structs may be zeroed: zero means the default. */
 #ifndef LAVARAY_H
 #define LAVARAY_H
@@ -55,7 +55,7 @@ char *lr_scene_schema(void);
 
 typedef struct lr_device_info {
     char name[256];
-    char driver[256];  /* driver name and version as the driver states them */
+    char driver[256]; /* driver name and version as the driver states them */
     uint32_t api_version;
     bool software;     /* a CPU implementation such as lavapipe */
     bool usable;       /* offers everything that lavaray needs */
@@ -113,8 +113,8 @@ bool lr_format_from_path(const char *path, lr_format *format);
 
 /* Writes the picture to path, or to standard output when path is "-". A regular file is replaced
  * only after its successor is complete. */
-lr_status lr_picture_write(const lr_picture *picture, const char *path,
-                           const lr_encoding *encoding, lr_error *error);
+lr_status lr_picture_write(const lr_picture *picture, const char *path, const lr_encoding *encoding,
+                           lr_error *error);
 
 /* ---- Rendering ---------------------------------------------------------------------------- */
 
@@ -144,14 +144,15 @@ typedef struct lr_render_stats {
     struct {
         uint64_t traced, hit;
     } primary, reflected, refracted, shadow;
-    uint64_t passed;            /* crossings of surfaces hidden inside another medium */
-    uint64_t dropped_depth;     /* rays not traced because the depth was used up */
-    uint64_t dropped_weight;    /* ... because their weight was below min_weight */
-    uint64_t dropped_nesting;   /* ... or media lost because too many were nested */
-    uint64_t non_finite;        /* contributions that were NaN or infinite, left out */
-    uint64_t saturated;         /* contributions above the film's range, clipped to it */
+    uint64_t passed;          /* crossings of surfaces hidden inside another medium */
+    uint64_t dropped_depth;   /* rays not traced because the depth was used up */
+    uint64_t dropped_weight;  /* ... because their weight was below min_weight */
+    uint64_t dropped_nesting; /* ... or media lost because too many were nested */
+    uint64_t non_finite;      /* contributions that were NaN or infinite, left out */
+    uint64_t saturated;       /* contributions above the film's range, clipped to it */
     double device_seconds, upload_seconds, compile_seconds, trace_seconds, read_back_seconds;
-    char hash[65]; /* of the picture; see lr_picture_hash */
+    double longest_pass_seconds; /* the longest wait for the device; a watchdog may end long ones */
+    char hash[65];               /* of the picture; see lr_picture_hash */
 } lr_render_stats;
 
 /* Renders the scene; the caller frees *picture. stats may be NULL. */

@@ -80,11 +80,11 @@ void print_record(const render_record *r)
     print_count("media lost: nesting", s->dropped_nesting);
     fprintf(stderr,
             "seconds  %.3f: device %.3f, scene %.3f, upload %.3f, compile %.3f, trace %.3f,\n"
-            "         read back %.3f, write %.3f\n"
+            "         read back %.3f, write %.3f; longest pass %.3f\n"
             "memory   %.1f MiB at most\n",
             r->total_seconds, r->device_seconds, r->parse_seconds, s->upload_seconds,
             s->compile_seconds, s->trace_seconds, s->read_back_seconds, r->write_seconds,
-            (double)peak_memory() / (1 << 20));
+            s->longest_pass_seconds, (double)peak_memory() / (1 << 20));
 }
 
 void print_record_warnings(const render_record *r)
@@ -139,11 +139,11 @@ static json_t *record_json(const render_record *r)
     json_t *dropped =
         json_pack("{s:I, s:I, s:I}", "depth", (json_int_t)s->dropped_depth, "weight",
                   (json_int_t)s->dropped_weight, "nesting", (json_int_t)s->dropped_nesting);
-    json_t *seconds =
-        json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "device", r->device_seconds, "parse",
-                  r->parse_seconds, "upload", s->upload_seconds, "compile", s->compile_seconds,
-                  "trace", s->trace_seconds, "read_back", s->read_back_seconds, "write",
-                  r->write_seconds, "total", r->total_seconds);
+    json_t *seconds = json_pack(
+        "{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "device", r->device_seconds, "parse",
+        r->parse_seconds, "upload", s->upload_seconds, "compile", s->compile_seconds, "trace",
+        s->trace_seconds, "read_back", s->read_back_seconds, "write", r->write_seconds, "total",
+        r->total_seconds, "longest_pass", s->longest_pass_seconds);
     return json_pack("{s:s, s:o*, s:o*, s:o*, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:f, s:o, s:I}",
                      "version", LR_VERSION, "scene", scene, "output", output, "camera", camera,
                      "device", device, "picture", picture, "rays", rays, "dropped", dropped,

@@ -296,7 +296,11 @@ static lr_status run_pass(lr_wavefront *w, VkPipeline trace, uint32_t generation
     record_light(w, work, set);
     lr_commands_barrier(w->device);
     lr_commands_copy(w->device, &w->counters, &w->counters_host, sizeof(struct gpu_counters));
+    double start = lr_now();
     status = lr_commands_finish(w->device, error);
+    double seconds = lr_now() - start;
+    if (seconds > w->stats->longest_pass_seconds)
+        w->stats->longest_pass_seconds = seconds;
     if (!status)
         status = take_counts(w, rays, generation, error);
     return status;
