@@ -15,7 +15,7 @@
 #define LOOPS_PER_INVOCATION 16384
 
 #define CHUNK_DEFAULT 262144
-#define CHUNK_MIN 1024
+#define CHUNK_MIN 256
 
 static uint32_t at_least(uint32_t value, uint32_t least)
 {
