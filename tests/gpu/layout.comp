@@ -1,0 +1,171 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// Writes every record as the kernels load it, field by field, as words into the film.
+// test_layout.c compares them with what it uploaded, and the offsets in this module with C's.
+#include "gpu_layout.h"
+#include "bindings.glsl"
+#include "scene_data.glsl"
+
+layout(local_size_x = 1) in;
+
+// Only for the offsets: the kernels declare no block with these.
+layout(std430, set = 0, binding = LR_BIND_COUNT) readonly buffer RecordBlock
+{
+    gpu_sphere some_sphere[2];
+    gpu_plane some_plane[2];
+    gpu_flat some_flat[2];
+    gpu_solid some_solid[2];
+    gpu_object some_object[2];
+    gpu_medium some_medium[2];
+    gpu_material some_material[2];
+    gpu_light some_light[2];
+    gpu_self_test_in some_self_test_in[2];
+    gpu_self_test_out some_self_test_out[2];
+};
+
+uint at = 0u;
+
+void put(uint word)
+{
+    film[at] = word;
+    at += 1u;
+}
+
+void put_vec3(vec3 v)
+{
+    put(floatBitsToUint(v.x));
+    put(floatBitsToUint(v.y));
+    put(floatBitsToUint(v.z));
+}
+
+void put_vec4(vec4 v)
+{
+    put_vec3(v.xyz);
+    put(floatBitsToUint(v.w));
+}
+
+void put_list(gpu_list x)
+{
+    put(x.first);
+    put(x.count);
+    put(x.opaque);
+    put(x.casters);
+}
+
+void put_sphere(gpu_sphere x)
+{
+    put_vec3(x.center); put(floatBitsToUint(x.inv_radius)); put(floatBitsToUint(x.radius));
+    put(x.object); put(x.flags); put(x.unused);
+}
+
+void put_plane(gpu_plane x)
+{
+    put_vec3(x.normal); put(floatBitsToUint(x.offset)); put(x.object); put(x.flags);
+    put(x.unused0); put(x.unused1);
+}
+
+void put_flat(gpu_flat x)
+{
+    put_vec3(x.normal); put(floatBitsToUint(x.offset)); put_vec3(x.u);
+    put(floatBitsToUint(x.u_offset)); put_vec3(x.v); put(floatBitsToUint(x.v_offset));
+    put(x.object); put(x.flags); put(x.unused0); put(x.unused1);
+}
+
+void put_solid(gpu_solid x)
+{
+    put_vec4(x.row0); put_vec4(x.row1); put_vec4(x.row2); put(floatBitsToUint(x.scale));
+    put(floatBitsToUint(x.inv_scale)); put(floatBitsToUint(x.radius_from));
+    put(floatBitsToUint(x.radius_slope)); put(x.object); put(x.flags); put(x.unused0);
+    put(x.unused1);
+}
+
+void put_medium(gpu_medium x)
+{
+    put_vec3(x.absorption); put(floatBitsToUint(x.ior));
+}
+
+void put_material(gpu_material x)
+{
+    put_vec3(x.color0); put(x.pattern); put_vec3(x.color1); put(floatBitsToUint(x.inv_size));
+    put_vec3(x.pattern_origin); put(floatBitsToUint(x.inv_length2)); put_vec3(x.pattern_direction);
+    put(x.flags); put_vec3(x.ambient); put(floatBitsToUint(x.shininess)); put_vec3(x.diffuse);
+    put(floatBitsToUint(x.ior)); put_vec3(x.specular); put(x.unused0); put_vec3(x.reflect);
+    put(x.unused1); put_vec3(x.transmit); put(x.unused2);
+}
+
+void put_light(gpu_light x)
+{
+    put_vec3(x.position); put(floatBitsToUint(x.half_falloff)); put_vec3(x.color); put(x.flags);
+    put_vec3(x.direction); put(floatBitsToUint(x.cos_angle)); put(floatBitsToUint(x.cos_scale));
+    put(x.unused0); put(x.unused1); put(x.unused2);
+}
+
+void put_ray(gpu_ray x)
+{
+    put_vec3(x.origin); put(x.pixel); put_vec3(x.direction); put(x.state); put_vec3(x.weight);
+    put(x.unused); put(x.media0); put(x.media1); put(x.media2); put(x.media3);
+}
+
+void put_hit(gpu_hit x)
+{
+    put_vec3(x.position); put(x.pixel); put_vec3(x.normal); put(x.object); put_vec3(x.direction);
+    put(x.state); put_vec3(x.weight); put(floatBitsToUint(x.offset)); put(x.media0); put(x.media1);
+    put(x.media2); put(x.media3);
+}
+
+void put_object(uint index)
+{
+    vec4 row0, row1, row2;
+    load_object_space(index, row0, row1, row2);
+    put_vec4(row0);
+    put_vec4(row1);
+    put_vec4(row2);
+    uvec3 ids = load_object_ids(index), shadow = load_object_shadow(index);
+    put(ids.x);
+    put(ids.y);
+    put(ids.z);
+    put(0u);
+    put(shadow.x);
+    put(shadow.y);
+    put(shadow.z);
+    put(0u);
+}
+
+void main()
+{
+    uint i = work.first;
+    put_sphere(load_sphere(i));
+    put_solid(load_solid(frame.ellipsoids.first, i));
+    put_plane(load_plane(i));
+    put_flat(load_flat(i));
+    put_solid(load_solid(frame.boxes.first, i));
+    put_solid(load_solid(frame.cones.first, i));
+    put_object(i);
+    put_material(load_material(i));
+    put_medium(load_medium(i));
+    put_light(load_light(i));
+    put_ray(rays_in[i]);
+    put_hit(hits[i]);
+    put_vec3(frame.origin); put(floatBitsToUint(frame.half_width)); put_vec3(frame.forward);
+    put(floatBitsToUint(frame.half_height)); put_vec3(frame.pixel_right);
+    put(floatBitsToUint(frame.inv_samples)); put_vec3(frame.pixel_down); put(frame.samples);
+    put_vec3(frame.background_low); put(frame.seed); put_vec3(frame.background_high);
+    put(frame.depth); put_vec3(frame.background_up); put(floatBitsToUint(frame.min_weight));
+    put_vec3(frame.fog_color); put(floatBitsToUint(frame.fog_density)); put_list(frame.spheres);
+    put_list(frame.ellipsoids); put_list(frame.planes); put_list(frame.flats);
+    put_list(frame.boxes); put_list(frame.cones); put(frame.objects); put(frame.materials);
+    put(frame.media); put(frame.lights); put(frame.inside0); put(frame.inside1);
+    put(frame.inside2); put(frame.inside3);
+    put(work.tile_x); put(work.tile_y); put(work.tile_width); put(work.tile_height);
+    put(work.first_sample); put(work.count); put(work.first); put(work.light);
+    put(work.light_count); put(work.add_ambient);
+    put(counters.hit_groups); put(counters.hit_groups_y); put(counters.hit_groups_z);
+    put(counters.unused0); put(counters.lit_groups); put(counters.lit_groups_y);
+    put(counters.lit_groups_z); put(counters.unused1); put(counters.hits); put(counters.lit);
+    put(counters.rays); put(counters.traced); put(counters.scattered); put(counters.shaded);
+    put(counters.reflected); put(counters.refracted); put(counters.passed);
+    put(counters.reflected_hits); put(counters.refracted_hits); put(counters.shadow);
+    put(counters.shadow_hits); put(counters.dropped_depth); put(counters.dropped_weight);
+    put(counters.dropped_nesting); put(counters.non_finite); put(counters.saturated);
+    put(counters.unused2); put(counters.unused3);
+}
