@@ -265,7 +265,7 @@ int main(void)
         cmocka_unit_test(test_log2),          cmocka_unit_test(test_exp2),
         cmocka_unit_test(test_pow),           cmocka_unit_test(test_length_and_normalize),
         cmocka_unit_test(test_dot_and_cross), cmocka_unit_test(test_mix),
-        cmocka_unit_test(test_is_finite),
+        cmocka_unit_test(test_is_finite),     cmocka_unit_test(test_validation_is_silent),
     };
-    return cmocka_run_group_tests(tests, setup_device, teardown_device);
+    return cmocka_run_group_tests(tests, setup_device, NULL);
 }

@@ -188,9 +188,10 @@ static void test_media_look(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_film_fixed),          cmocka_unit_test(test_cell_index),
-        cmocka_unit_test(test_cell_index_far_away), cmocka_unit_test(test_media_add),
-        cmocka_unit_test(test_media_take),          cmocka_unit_test(test_media_look),
+        cmocka_unit_test(test_film_fixed),           cmocka_unit_test(test_cell_index),
+        cmocka_unit_test(test_cell_index_far_away),  cmocka_unit_test(test_media_add),
+        cmocka_unit_test(test_media_take),           cmocka_unit_test(test_media_look),
+        cmocka_unit_test(test_validation_is_silent),
     };
-    return cmocka_run_group_tests(tests, setup_device, teardown_device);
+    return cmocka_run_group_tests(tests, setup_device, NULL);
 }

@@ -133,6 +133,7 @@ int main(void)
         cmocka_unit_test(test_crop),
         cmocka_unit_test(test_repetition),
         cmocka_unit_test(test_statistics_do_not_depend_on_the_cut),
+        cmocka_unit_test(test_validation_is_silent),
     };
-    return cmocka_run_group_tests(tests, setup_device, teardown_device);
+    return cmocka_run_group_tests(tests, setup_device, NULL);
 }

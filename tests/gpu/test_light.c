@@ -107,6 +107,16 @@ static void test_lights_add_up(void **state)
     expect(found, 1.25, 2.25, 1.75, 5e-6);
 }
 
+/* Sums whose low words carry over. */
+static void test_many_lights_add_up(void **state)
+{
+    char lights[4096] = "";
+    for (int i = 0; i < 40; i++)
+        strcat(lights, "  - directional: {direction: [0, 0, -1], color: [0.37, 0.0511, 1e-4]}\n");
+    rgb found = render_pixel(*state, NULL, ASKEW "lights:\n%sobjects:\n" WALL, lights);
+    expect(found, 40 * 0.37, 40 * 0.0511, 40 * 1e-4, 1e-5);
+}
+
 /* ---- Shadows ------------------------------------------------------------------------------- */
 
 static void check_shadow(void **state, const char *light, const char *object, double left,
@@ -282,12 +292,14 @@ int main(void)
         cmocka_unit_test(test_back_of_a_surface),
         cmocka_unit_test(test_ambient_and_color),
         cmocka_unit_test(test_lights_add_up),
+        cmocka_unit_test(test_many_lights_add_up),
         cmocka_unit_test(test_shadows),
         cmocka_unit_test(test_tinted_shadows),
         cmocka_unit_test(test_spot),
         cmocka_unit_test(test_highlights),
         cmocka_unit_test(test_fog),
         cmocka_unit_test(test_absorption),
+        cmocka_unit_test(test_validation_is_silent),
     };
-    return cmocka_run_group_tests(tests, setup_device, teardown_device);
+    return cmocka_run_group_tests(tests, setup_device, NULL);
 }

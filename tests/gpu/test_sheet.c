@@ -401,6 +401,7 @@ int main(void)
         cmocka_unit_test(test_plane),
         cmocka_unit_test(test_plane_parallel),
         cmocka_unit_test(test_plane_is_packed_with_a_unit_normal),
+        cmocka_unit_test(test_validation_is_silent),
     };
-    return cmocka_run_group_tests(tests, setup_device, teardown_device);
+    return cmocka_run_group_tests(tests, setup_device, NULL);
 }

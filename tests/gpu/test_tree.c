@@ -163,6 +163,16 @@ static void test_saturation(void **state)
     assert_near(found.r, LR_FILM_MAX, 0);
     assert_near(found.g, 0.75, 1e-6);
     assert_near(found.b, 2e8, 100);
+    found = render_pixel(*state, &stats, WALL, "0", SUN("[1e8, 0.5, 0]", "1"), 4, "1", "1");
+    assert_int_equal(stats.saturated, 0);
+    assert_near(found.r, LR_FILM_MAX / 4, 0);
+    assert_near(found.g, 0.5, 1e-6);
+    found = render_pixel(*state, &stats,
+                         "camera: {from: [0, 0, 5]}\nambient: 0.3\nbackground: [1e12, 0.5, 0]\n"
+                         "lights: []\nobjects:\n  - plane: {normal: [0, 0, 1], material: "
+                         "{color: 1, ambient: 1, diffuse: 0, reflect: 1}}\n");
+    assert_near(found.r, LR_FILM_MAX, 0);
+    assert_near(found.g, 0.8, 1e-6);
     /* Over several samples too, whose mean is then below what it should be, not above. */
     found = render_pixel(*state, &stats, WALL, "0", SUN("[1e12, 0.5, 0]", "1"), 4, "1", "1");
     assert_int_equal(stats.saturated, 4);
@@ -187,7 +197,7 @@ int main(void)
         cmocka_unit_test(test_full_binary_tree),  cmocka_unit_test(test_forest),
         cmocka_unit_test(test_min_weight_prunes), cmocka_unit_test(test_samples_are_counted),
         cmocka_unit_test(test_non_finite),        cmocka_unit_test(test_saturation),
-        cmocka_unit_test(test_small_values),
+        cmocka_unit_test(test_small_values),      cmocka_unit_test(test_validation_is_silent),
     };
-    return cmocka_run_group_tests(tests, setup_device, teardown_device);
+    return cmocka_run_group_tests(tests, setup_device, NULL);
 }
