@@ -1,5 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 // Writes every record as the kernels load it, field by field, as words into the film.
 // test_layout.c compares them with what it uploaded, and the offsets in this module with C's.
 #include "gpu_layout.h"

@@ -1,5 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 // Runs one formula of the renderer on many inputs; which one is in the first push constant.
 #include "gpu_layout.h"
 #include "film.glsl"
