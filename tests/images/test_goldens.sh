@@ -5,6 +5,7 @@ folder=tests/images
 kept=$BUILD_DIR/images
 command -v pngtopnm >/dev/null && command -v python3 >/dev/null || { echo 'no netpbm or python3' >&2; exit 77; }
 "$LAVARAY" doctor >/dev/null 2>&1 || { echo 'no usable Vulkan device' >&2; exit 77; }
+rm -rf "$kept"
 mkdir -p "$kept" || exit 1
 failures=0
 
@@ -16,7 +17,7 @@ problem() {
 # pixels FILE: what a PNG decodes to; a PPM as it is.
 pixels() {
     case $1 in
-    *.png) pngtopnm "$1" 2>/dev/null ;;
+    *.png) pngtopnm "$1" 2>/dev/null || echo "cannot decode $1" ;;
     *) cat "$1" ;;
     esac
 }
@@ -30,10 +31,8 @@ golden() {
         cp "$kept/$name" "$folder/golden/$name"
     elif [ ! -f "$folder/golden/$name" ]; then
         problem "$name: no golden; look at $kept/$name, then accept it with UPDATE=1"
-        return
     elif ! cmp -s <(pixels "$folder/golden/$name") <(pixels "$kept/$name"); then
         problem "$name: not the golden's pixels; look at $kept/$name, and if it is right accept it with UPDATE=1"
-        return
     fi
 }
 
