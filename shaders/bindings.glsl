@@ -21,6 +21,7 @@ layout(constant_id = LR_SPEC_TRANSPARENT) const bool has_transparent = true;
 layout(constant_id = LR_SPEC_SPECULAR) const bool has_specular = true;
 layout(constant_id = LR_SPEC_PATTERNS) const bool has_patterns = true;
 layout(constant_id = LR_SPEC_SPOTS) const bool has_spots = true;
+layout(constant_id = LR_SPEC_SHUFFLE) const bool has_shuffle = true;
 
 layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame; };
 layout(set = 0, binding = LR_BIND_SCENE_TEXEL) uniform usamplerBuffer scene_texels;
@@ -44,6 +45,13 @@ uint spread_group(uint group, uint groups)
 {
     uint half_count = (groups + 1u) >> 1;
     return group < half_count ? 2u * group : 2u * (group - half_count) + 1u;
+}
+
+// lavapipe compiles a kernel anew whenever a uniform changes that alone decides a branch or the length
+// of a loop, which here is every pass (docs/drivers.md). This addition of 0 hides the uniform from it.
+uint hidden(uint uniform_value)
+{
+    return uniform_value + (gl_NumWorkGroups.z >> 31);
 }
 
 uint queue_index()

@@ -11,7 +11,7 @@
 // rows and a jitter within the stratum that depend on the pixel. One sample is the pixel's centre.
 vec2 sample_position(uvec2 pixel, uint index)
 {
-    if (frame.samples == 1u)
+    if (hidden(frame.samples) == 1u)
         return vec2(0.5, 0.5);
     uint jitter = hash(hash_pixel(pixel, frame.seed, 0u) + index);
     uint scramble = hash_pixel(pixel, frame.seed, 1u);

@@ -53,7 +53,8 @@ typedef struct vec4 {
 #define LR_SPEC_SPECULAR 14
 #define LR_SPEC_PATTERNS 15
 #define LR_SPEC_SPOTS 16
-#define LR_SPEC_COUNT 17
+#define LR_SPEC_SHUFFLE 17 /* share loads within a subgroup */
+#define LR_SPEC_COUNT 18
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8

@@ -1,5 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 // Light that falls on each hit: the ambient light, and each light source with its shadow ray.
 #include "gpu_layout.h"
 #include "bindings.glsl"
@@ -40,7 +42,9 @@ arriving_light sample_light(gpu_light light, vec3 position)
                           directional ? LR_T_MAX : safe2 * inv_distance);
 }
 
-vec3 light_left(gpu_light light, arriving_light arriving, vec3 origin)
+// What is left of a light's colour behind all that stands before it; `counted` tells whether the ray
+// is more than a companion to its subgroup's.
+vec3 light_left(gpu_light light, arriving_light arriving, vec3 origin, bool counted)
 {
     // From the offset origin the light lies in a slightly different direction.
     bool directional = (light.flags & LR_GPU_LIGHT_DIRECTIONAL) != 0u;
@@ -56,8 +60,9 @@ vec3 light_left(gpu_light light, arriving_light arriving, vec3 origin)
         vec3 bits = vec3(min(depth, uvec3(LR_SHADOW_OPAQUE))) * LR_SHADOW_BITS;
         left = vec3(ex_exp2(bits.x), ex_exp2(bits.y), ex_exp2(bits.z));
     }
-    atomicAdd(counters.shadow, 1u);
-    if (depth != uvec3(0u))
+    if (counted)
+        atomicAdd(counters.shadow, 1u);
+    if (counted && depth != uvec3(0u))
         atomicAdd(counters.shadow_hits, 1u);
     return vec3(dark.x ? 0.0 : left.x, dark.y ? 0.0 : left.y, dark.z ? 0.0 : left.z);
 }
@@ -65,13 +70,11 @@ vec3 light_left(gpu_light light, arriving_light arriving, vec3 origin)
 void main()
 {
     uint index = queue_index();
-    if (has_scatter) {
-        if (index >= counters.lit)
-            return;
+    uint count = has_scatter ? counters.lit : counters.hits;
+    bool wanted = index < count;
+    index = wanted ? index : 0u;
+    if (has_scatter)
         index = lit[index];
-    } else if (index >= counters.hits) {
-        return;
-    }
     gpu_hit hit = hits[index];
     gpu_material m = load_material(load_object_ids(hit.object).x);
     vec3 color = m.color0;
@@ -81,19 +84,22 @@ void main()
     vec3 origin = hit.position + n * hit.offset;
 
     film_sum sum = film_zero();
-    if (work.add_ambient != 0u)
+    if (hidden(work.add_ambient) != 0u)
         film_accumulate(sum, hit.weight * (m.ambient * color));
-    for (uint i = 0u; i < work.light_count; i++) {
+    uint light_count = hidden(work.light_count);
+    for (uint i = 0u; i < light_count; i++) {
         gpu_light light = load_light(work.light + i);
         arriving_light arriving = sample_light(light, hit.position);
         vec3 share = classic_light(m, color, n, -hit.direction, arriving.wi);
         vec3 value = hit.weight * (arriving.color * share);
-        if (value.x > 0.0 || value.y > 0.0 || value.z > 0.0) {
-            if ((light.flags & LR_GPU_LIGHT_SHADOWS) != 0u)
-                value = value * light_left(light, arriving, origin);
+        bool reaches = wanted && (value.x > 0.0 || value.y > 0.0 || value.z > 0.0);
+        if ((light.flags & LR_GPU_LIGHT_SHADOWS) != 0u)
+            value = value * light_left(light, arriving, origin, reaches);
+        if (reaches)
             film_accumulate(sum, value);
-        }
     }
+    if (!wanted)
+        return;
     film_add(hit.pixel, sum);
     atomicAdd(counters.shaded, 1u);
 }

@@ -1,5 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 // The children of each hit: the reflected and the refracted ray, and the list of the hits that light
 // falls on. Runs only in scenes where something reflects or transmits.
 #include "gpu_layout.h"

@@ -99,4 +99,65 @@ gpu_light load_light(uint index)
                      d.z, d.w);
 }
 
+// Loops over all primitives of a kind take them in batches: each invocation of a subgroup loads one
+// and the others get it by shuffles, because a load is paid per invocation on software devices, and a
+// shuffle is one instruction. So all invocations must be active in such a loop.
+uint batch_size()
+{
+    return has_shuffle ? gl_SubgroupSize : 1u;
+}
+
+// What this invocation loads of the batch that begins at `first`.
+uint batch_index(uint first, uint end)
+{
+    return has_shuffle ? min(first + gl_SubgroupInvocationID, end - 1u) : first;
+}
+
+float share(float x, uint lane)
+{
+    return has_shuffle ? subgroupShuffle(x, lane) : x;
+}
+
+uint share(uint x, uint lane)
+{
+    return has_shuffle ? subgroupShuffle(x, lane) : x;
+}
+
+vec3 share(vec3 v, uint lane)
+{
+    return vec3(share(v.x, lane), share(v.y, lane), share(v.z, lane));
+}
+
+vec4 share(vec4 v, uint lane)
+{
+    return vec4(share(v.x, lane), share(v.y, lane), share(v.z, lane), share(v.w, lane));
+}
+
+gpu_sphere share(gpu_sphere s, uint lane)
+{
+    return gpu_sphere(share(s.center, lane), share(s.inv_radius, lane), share(s.radius, lane),
+                      share(s.object, lane), 0u, 0u);
+}
+
+gpu_plane share(gpu_plane p, uint lane)
+{
+    return gpu_plane(share(p.normal, lane), share(p.offset, lane), share(p.object, lane), 0u, 0u,
+                     0u);
+}
+
+gpu_flat share(gpu_flat f, uint lane)
+{
+    return gpu_flat(share(f.normal, lane), share(f.offset, lane), share(f.u, lane),
+                    share(f.u_offset, lane), share(f.v, lane), share(f.v_offset, lane),
+                    share(f.object, lane), share(f.flags, lane), 0u, 0u);
+}
+
+gpu_solid share(gpu_solid s, uint lane)
+{
+    return gpu_solid(share(s.row0, lane), share(s.row1, lane), share(s.row2, lane),
+                     share(s.scale, lane), share(s.inv_scale, lane), share(s.radius_from, lane),
+                     share(s.radius_slope, lane), share(s.object, lane), share(s.flags, lane), 0u,
+                     0u);
+}
+
 #endif

@@ -1,5 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 // Closest hits. As the primary kernel it makes the camera rays of a tile, one sample a workgroup
 // layer; otherwise it reads rays_in. Rays that miss put the background into the film, the others
 // become entries of hits.
@@ -45,17 +47,18 @@ bool make_camera_ray(out gpu_ray ray)
 void main()
 {
     gpu_ray ray;
+    bool wanted;
     if (primary) {
-        if (!make_camera_ray(ray))
-            return;
+        wanted = make_camera_ray(ray);
     } else {
         uint index = queue_index();
-        if (index >= work.count)
-            return;
-        ray = rays_in[work.first + index];
+        wanted = index < work.count;
+        ray = rays_in[work.first + (wanted ? index : 0u)];
     }
 
     nearest_hit found = trace_nearest(ray.origin, ray.direction);
+    if (!wanted)
+        return;
     bool missed = found.kind == LR_PRIMITIVE_NONE;
     uint medium = has_media ? media_top(uvec4(ray.media0, ray.media1, ray.media2, ray.media3)) : 0u;
     vec3 weight = ray.weight;

@@ -1,5 +1,5 @@
 // The trace interface, all that kernels call: the nearest hit of a ray, and what stands between a
-// point and a light.
+// point and a light. All invocations of a subgroup must call these two together.
 #ifndef TRACE_GLSL
 #define TRACE_GLSL
 
@@ -21,41 +21,50 @@ void keep_nearer(inout nearest_hit best, vec2 crossing, uint kind, uint index, u
         best = nearest_hit(t, kind, index, object);
 }
 
+// Runs `body` for each primitive p, number i, of one kind's list from `begin` to `end`.
+#define FOR_EACH(kind, load, begin, end, body)                                                     \
+    {                                                                                              \
+        uint stop = hidden(end);                                                                   \
+        for (uint first = begin; first < stop; first += batch_size()) {                            \
+            uint mine = batch_index(first, stop);                                                  \
+            kind held = load;                                                                      \
+            uint batch = min(batch_size(), stop - first);                                          \
+            for (uint lane = 0u; lane < batch; lane++) {                                           \
+                uint i = first + lane;                                                             \
+                kind p = share(held, lane);                                                        \
+                body;                                                                              \
+            }                                                                                      \
+        }                                                                                          \
+    }
+
 nearest_hit trace_nearest(vec3 o, vec3 d)
 {
     nearest_hit best = nearest_hit(LR_T_MAX, LR_PRIMITIVE_NONE, 0u, 0xFFFFFFFFu);
     float inv_a = ex_rcp(ex_dot(d, d));
     if (has_spheres)
-        for (uint i = 0u; i < frame.spheres.count; i++) {
-            gpu_sphere s = load_sphere(i);
-            keep_nearer(best, intersect_sphere(o, d, inv_a, s), LR_PRIMITIVE_SPHERE, i, s.object);
-        }
+        FOR_EACH(gpu_sphere, load_sphere(mine), 0u, frame.spheres.count,
+                 keep_nearer(best, intersect_sphere(o, d, inv_a, p), LR_PRIMITIVE_SPHERE, i,
+                             p.object))
     if (has_ellipsoids)
-        for (uint i = 0u; i < frame.ellipsoids.count; i++) {
-            gpu_solid s = load_solid(frame.ellipsoids.first, i);
-            keep_nearer(best, intersect_ellipsoid(o, d, s), LR_PRIMITIVE_ELLIPSOID, i, s.object);
-        }
+        FOR_EACH(gpu_solid, load_solid(frame.ellipsoids.first, mine), 0u, frame.ellipsoids.count,
+                 keep_nearer(best, intersect_ellipsoid(o, d, p), LR_PRIMITIVE_ELLIPSOID, i,
+                             p.object))
     if (has_planes)
-        for (uint i = 0u; i < frame.planes.count; i++) {
-            gpu_plane p = load_plane(i);
-            keep_nearer(best, intersect_plane(o, d, p.normal, p.offset), LR_PRIMITIVE_PLANE, i,
-                        p.object);
-        }
+        FOR_EACH(gpu_plane, load_plane(mine), 0u, frame.planes.count,
+                 keep_nearer(best, intersect_plane(o, d, p.normal, p.offset), LR_PRIMITIVE_PLANE, i,
+                             p.object))
     if (has_flats)
-        for (uint i = 0u; i < frame.flats.count; i++) {
-            gpu_flat f = load_flat(i);
-            keep_nearer(best, intersect_flat(o, d, f), LR_PRIMITIVE_FLAT, i, f.object);
-        }
+        FOR_EACH(gpu_flat, load_flat(mine), 0u, frame.flats.count,
+                 keep_nearer(best, intersect_flat(o, d, p), LR_PRIMITIVE_FLAT, i,
+                             p.object))
     if (has_boxes)
-        for (uint i = 0u; i < frame.boxes.count; i++) {
-            gpu_solid s = load_solid(frame.boxes.first, i);
-            keep_nearer(best, intersect_box(o, d, s), LR_PRIMITIVE_BOX, i, s.object);
-        }
+        FOR_EACH(gpu_solid, load_solid(frame.boxes.first, mine), 0u, frame.boxes.count,
+                 keep_nearer(best, intersect_box(o, d, p), LR_PRIMITIVE_BOX, i,
+                             p.object))
     if (has_cones)
-        for (uint i = 0u; i < frame.cones.count; i++) {
-            gpu_solid s = load_solid(frame.cones.first, i);
-            keep_nearer(best, intersect_cone(o, d, s), LR_PRIMITIVE_CONE, i, s.object);
-        }
+        FOR_EACH(gpu_solid, load_solid(frame.cones.first, mine), 0u, frame.cones.count,
+                 keep_nearer(best, intersect_cone(o, d, p), LR_PRIMITIVE_CONE, i,
+                             p.object))
     return best;
 }
 
@@ -135,56 +144,41 @@ uvec3 trace_shadow(vec3 o, vec3 d, float t_max)
     bool blocked = false;
     float inv_a = ex_rcp(ex_dot(d, d));
     if (has_spheres)
-        for (uint i = 0u; i < frame.spheres.opaque && !blocked; i++)
-            blocked = crosses(intersect_sphere(o, d, inv_a, load_sphere(i)), t_max);
+        FOR_EACH(gpu_sphere, load_sphere(mine), 0u, frame.spheres.opaque,
+                 blocked = crosses(intersect_sphere(o, d, inv_a, p), t_max) || blocked)
     if (has_ellipsoids)
-        for (uint i = 0u; i < frame.ellipsoids.opaque && !blocked; i++)
-            blocked = crosses(intersect_ellipsoid(o, d, load_solid(frame.ellipsoids.first, i)), t_max);
+        FOR_EACH(gpu_solid, load_solid(frame.ellipsoids.first, mine), 0u, frame.ellipsoids.opaque,
+                 blocked = crosses(intersect_ellipsoid(o, d, p), t_max) || blocked)
     if (has_planes)
-        for (uint i = 0u; i < frame.planes.opaque && !blocked; i++) {
-            gpu_plane p = load_plane(i);
-            blocked = crosses(intersect_plane(o, d, p.normal, p.offset), t_max);
-        }
+        FOR_EACH(gpu_plane, load_plane(mine), 0u, frame.planes.opaque,
+                 blocked = crosses(intersect_plane(o, d, p.normal, p.offset), t_max) || blocked)
     if (has_flats)
-        for (uint i = 0u; i < frame.flats.opaque && !blocked; i++)
-            blocked = crosses(intersect_flat(o, d, load_flat(i)), t_max);
+        FOR_EACH(gpu_flat, load_flat(mine), 0u, frame.flats.opaque,
+                 blocked = crosses(intersect_flat(o, d, p), t_max) || blocked)
     if (has_boxes)
-        for (uint i = 0u; i < frame.boxes.opaque && !blocked; i++)
-            blocked = crosses(intersect_box(o, d, load_solid(frame.boxes.first, i)), t_max);
+        FOR_EACH(gpu_solid, load_solid(frame.boxes.first, mine), 0u, frame.boxes.opaque,
+                 blocked = crosses(intersect_box(o, d, p), t_max) || blocked)
     if (has_cones)
-        for (uint i = 0u; i < frame.cones.opaque && !blocked; i++)
-            blocked = crosses(intersect_cone(o, d, load_solid(frame.cones.first, i)), t_max);
-
+        FOR_EACH(gpu_solid, load_solid(frame.cones.first, mine), 0u, frame.cones.opaque,
+                 blocked = crosses(intersect_cone(o, d, p), t_max) || blocked)
     if (has_transparent && has_spheres)
-        for (uint i = frame.spheres.opaque; i < frame.spheres.casters; i++) {
-            gpu_sphere s = load_sphere(i);
-            tint(depth, intersect_sphere(o, d, inv_a, s), t_max, s.object);
-        }
+        FOR_EACH(gpu_sphere, load_sphere(mine), frame.spheres.opaque, frame.spheres.casters,
+                 tint(depth, intersect_sphere(o, d, inv_a, p), t_max, p.object))
     if (has_transparent && has_ellipsoids)
-        for (uint i = frame.ellipsoids.opaque; i < frame.ellipsoids.casters; i++) {
-            gpu_solid s = load_solid(frame.ellipsoids.first, i);
-            tint(depth, intersect_ellipsoid(o, d, s), t_max, s.object);
-        }
+        FOR_EACH(gpu_solid, load_solid(frame.ellipsoids.first, mine), frame.ellipsoids.opaque, frame.ellipsoids.casters,
+                 tint(depth, intersect_ellipsoid(o, d, p), t_max, p.object))
     if (has_transparent && has_planes)
-        for (uint i = frame.planes.opaque; i < frame.planes.casters; i++) {
-            gpu_plane p = load_plane(i);
-            tint(depth, intersect_plane(o, d, p.normal, p.offset), t_max, p.object);
-        }
+        FOR_EACH(gpu_plane, load_plane(mine), frame.planes.opaque, frame.planes.casters,
+                 tint(depth, intersect_plane(o, d, p.normal, p.offset), t_max, p.object))
     if (has_transparent && has_flats)
-        for (uint i = frame.flats.opaque; i < frame.flats.casters; i++) {
-            gpu_flat f = load_flat(i);
-            tint(depth, intersect_flat(o, d, f), t_max, f.object);
-        }
+        FOR_EACH(gpu_flat, load_flat(mine), frame.flats.opaque, frame.flats.casters,
+                 tint(depth, intersect_flat(o, d, p), t_max, p.object))
     if (has_transparent && has_boxes)
-        for (uint i = frame.boxes.opaque; i < frame.boxes.casters; i++) {
-            gpu_solid s = load_solid(frame.boxes.first, i);
-            tint(depth, intersect_box(o, d, s), t_max, s.object);
-        }
+        FOR_EACH(gpu_solid, load_solid(frame.boxes.first, mine), frame.boxes.opaque, frame.boxes.casters,
+                 tint(depth, intersect_box(o, d, p), t_max, p.object))
     if (has_transparent && has_cones)
-        for (uint i = frame.cones.opaque; i < frame.cones.casters; i++) {
-            gpu_solid s = load_solid(frame.cones.first, i);
-            tint(depth, intersect_cone(o, d, s), t_max, s.object);
-        }
+        FOR_EACH(gpu_solid, load_solid(frame.cones.first, mine), frame.cones.opaque, frame.cones.casters,
+                 tint(depth, intersect_cone(o, d, p), t_max, p.object))
     return blocked ? uvec3(LR_SHADOW_OPAQUE) : depth;
 }
 

@@ -24,6 +24,7 @@ enum {
     OP_CAPABILITY = 17,
     OP_FUNCTION = 54,
     OP_FUNCTION_END = 56,
+    OP_LOAD = 61,
     OP_DECORATE = 71,
     OP_MEMBER_DECORATE = 72,
     OP_DECORATION_GROUP = 73,
@@ -43,6 +44,11 @@ enum {
     OP_DECORATE_ID = 332,
     OP_DECORATE_STRING = 5632,
     OP_MEMBER_DECORATE_STRING = 5633,
+
+    DECORATION_RELAXED_PRECISION = 0,
+    DECORATION_BUILT_IN = 11,
+    BUILT_IN_SUBGROUP_SIZE = 36,
+    BUILT_IN_SUBGROUP_INVOCATION = 41,
 };
 
 void lr_spirv_free(lr_spirv *module)
@@ -283,6 +289,38 @@ static void insert(lr_spirv *module, enum section section, const uint32_t *instr
     module->count += length;
 }
 
+/* glslang calls gl_SubgroupSize and gl_SubgroupInvocationID mediump and so decorates them, and
+ * loads of them, RelaxedPrecision. They are small integers: nothing is lost by taking that back. */
+static lr_status drop_relaxed_builtins(lr_spirv *module, uint32_t bound, lr_error *error)
+{
+    bool *subgroup = calloc(bound, sizeof *subgroup); /* by id */
+    if (!subgroup)
+        return lr_fail(error, LR_ERROR_MEMORY, "out of memory for a SPIR-V module");
+    SPIRV_EACH(at, module->words, module->count)
+    {
+        const uint32_t *w = module->words + at;
+        uint32_t opcode = spirv_opcode(w[0]), length = spirv_length(w[0]);
+        if (opcode == OP_DECORATE && length > 3 && w[2] == DECORATION_BUILT_IN)
+            subgroup[w[1]] |=
+                w[3] == BUILT_IN_SUBGROUP_SIZE || w[3] == BUILT_IN_SUBGROUP_INVOCATION;
+        if (opcode == OP_LOAD && length > 3 && w[2] < bound && w[3] < bound)
+            subgroup[w[2]] |= subgroup[w[3]];
+    }
+    size_t kept = SPIRV_HEADER_WORDS;
+    for (size_t at = SPIRV_HEADER_WORDS, length; at < module->count; at += length) {
+        uint32_t *w = module->words + at;
+        length = spirv_length(w[0]);
+        if (spirv_opcode(w[0]) == OP_DECORATE && w[2] == DECORATION_RELAXED_PRECISION &&
+            subgroup[w[1]])
+            continue;
+        memmove(module->words + kept, w, length * sizeof *w);
+        kept += length;
+    }
+    module->count = kept;
+    free(subgroup);
+    return LR_OK;
+}
+
 lr_status lr_spirv_decorate(const uint32_t *words, size_t count, lr_spirv *out, lr_error *error)
 {
     *out = (lr_spirv){0};
@@ -318,6 +356,7 @@ lr_status lr_spirv_decorate(const uint32_t *words, size_t count, lr_spirv *out, 
     }
     memcpy(out->words + place + added, words + place, (count - place) * sizeof *words);
     out->count = count + added;
+    status = drop_relaxed_builtins(out, index.bound, error);
 done:
     spirv_index_free(&index);
     return status;

@@ -13,6 +13,7 @@ enum {
     OP_MEMBER_NAME = 6,
     OP_LINE = 8,
     OP_ENTRY_POINT = 15,
+    OP_CAPABILITY = 17,
     OP_CONSTANT_TRUE = 41,
     OP_CONSTANT_FALSE = 42,
     OP_SPEC_CONSTANT_TRUE = 48,
@@ -39,7 +40,9 @@ enum {
     OP_BRANCH = 249,
     OP_BRANCH_CONDITIONAL = 250,
     OP_SWITCH = 251,
+    OP_GROUP_NON_UNIFORM_SHUFFLE = 345,
     DECORATION_SPEC_ID = 1,
+    CAPABILITY_SHUFFLE = 65,
 };
 
 typedef enum truth { UNKNOWN, FALSE, TRUE } truth;
@@ -53,6 +56,7 @@ typedef struct folding {
     bool *reachable;       /* by label */
     uint32_t *ends;        /* by label: where its terminator stands */
     bool *live;            /* by function: some entry point calls it */
+    bool shuffles;         /* the code that is left shuffles within subgroups */
     bool *removed;         /* by id: defined in a block that is gone */
     const uint32_t *constants;
     uint32_t constant_count;
@@ -329,7 +333,9 @@ static void find_removed(folding *f)
     uint32_t function = 0, label = 0;
     SPIRV_EACH(word, f->words, f->count)
     {
-        uint32_t id = is_gone(f, word, &function, &label) ? result_of(at(f, word)) : 0;
+        bool gone = is_gone(f, word, &function, &label);
+        uint32_t id = gone ? result_of(at(f, word)) : 0;
+        f->shuffles |= !gone && spirv_opcode(f->words[word]) == OP_GROUP_NON_UNIFORM_SHUFFLE;
         if (id && id < f->bound)
             f->removed[id] = true;
     }
@@ -380,6 +386,9 @@ lr_status lr_spirv_specialize(const uint32_t *words, size_t count, const uint32_
         if (annotates && f.removed[words[word + 1]])
             continue;
         if (opcode == OP_DECORATE && words[word + 2] == DECORATION_SPEC_ID)
+            continue;
+        /* A device without shuffles must not see the capability either. */
+        if (opcode == OP_CAPABILITY && words[word + 1] == CAPABILITY_SHUFFLE && !f.shuffles)
             continue;
         out->count += emit(&f, word, label, out->words + out->count);
     }

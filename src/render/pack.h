@@ -19,7 +19,7 @@ typedef struct lr_packed_scene {
     uint32_t row_count, row_capacity;
     uint32_t primitive_count, light_count;
     struct gpu_frame frame;
-    uint32_t constants[LR_SPEC_COUNT]; /* but for LR_SPEC_TEXEL_LOADS and LR_SPEC_PRIMARY */
+    uint32_t constants[LR_SPEC_COUNT]; /* but for those that only the device decides */
 } lr_packed_scene;
 
 lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_packed_scene *packed,

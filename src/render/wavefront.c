@@ -55,6 +55,7 @@ static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *er
     uint32_t constants[LR_SPEC_COUNT];
     memcpy(constants, w->scene->constants, sizeof constants);
     constants[LR_SPEC_TEXEL_LOADS] = texel_loads;
+    constants[LR_SPEC_SHUFFLE] = w->device->subgroup_shuffle;
     constants[LR_SPEC_PRIMARY] = 1;
     lr_program_desc desc = {trace_spv, sizeof trace_spv / 4, constants, LR_SPEC_COUNT};
     lr_status status = lr_program_create(w->device, &w->layout, &desc, &w->primary, error);
