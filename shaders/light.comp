@@ -84,7 +84,7 @@ void main()
     vec3 origin = hit.position + n * hit.offset;
 
     film_sum sum = film_zero();
-    if (hidden(work.add_ambient) != 0u)
+    if (wanted && hidden(work.add_ambient) != 0u)
         film_accumulate(sum, hit.weight * (m.ambient * color));
     uint light_count = hidden(work.light_count);
     for (uint i = 0u; i < light_count; i++) {
