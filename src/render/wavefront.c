@@ -7,8 +7,8 @@
 #include "scatter.spv.h"
 #include "trace.spv.h"
 
-/* Rays, towards lights too, times primitives that one pass may test: about 50 ms on two cores. */
-#define TESTS_PER_PASS (1u << 24)
+/* Rays, towards lights too, times primitives that one pass may test: some 50 ms on two cores. */
+#define TESTS_PER_PASS (1u << 23)
 
 /* lavapipe of Mesa 22.3 silently ends all loops of an invocation after some 65,000 iterations
  * (docs/drivers.md); this stays far below. */
