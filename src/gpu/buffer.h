@@ -19,7 +19,7 @@ typedef enum lr_buffer_kind {
     LR_BUFFER_HOST,    /* mapped, coherent memory for transfers */
 } lr_buffer_kind;
 
-/* Creates a zero-initialised descriptor's worth of buffer; contents are undefined. Refuses sizes
+/* Creates a buffer, its contents undefined. Refuses sizes
  * over the device's limits, naming the limit and `what` the buffer is for. */
 lr_status lr_buffer_create(lr_device *device, lr_buffer_kind kind, VkDeviceSize size,
                            const char *what, lr_buffer *buffer, lr_error *error);
