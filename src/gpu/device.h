@@ -22,7 +22,7 @@ struct lr_device {
     lr_spirv_modes modes; /* float-control modes that the device offers */
     lr_device_info info;
     bool subgroup_shuffle; /* compute subgroups can shuffle */
-    bool exact; /* passed the arithmetic self-test */
+    bool exact;            /* passed the arithmetic self-test */
     double open_seconds;
     uint32_t message_count; /* validation messages */
     char first_message[1024];

@@ -37,8 +37,8 @@ static inline lr_scene *parse_good(const char *text)
     return scene;
 }
 
-/* Parses text that must not be a scene and returns the report. Not inlined, because gcc 12 would then
- * warn of a dangling pointer that there is not. */
+/* Parses text that must not be a scene and returns the report. Not inlined, because gcc 12 would
+ * then warn of a dangling pointer that there is not. */
 __attribute__((noinline, unused)) static char *parse_bad(const char *text, size_t length)
 {
     lr_scene *scene = NULL;
