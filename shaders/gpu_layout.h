@@ -87,12 +87,11 @@ typedef struct vec4 {
 #define LR_CHECKER_SNAP 1.0e-4     /* in cells; see pattern.glsl */
 
 /* ---- A primitive's and object's flags ---- */
-#define LR_FLAG_CASTS_SHADOW 1u
-#define LR_FLAG_SOLID 2u       /* encloses a medium */
-#define LR_FLAG_TRANSPARENT 4u /* its material transmits */
-#define LR_FLAG_OPEN 8u        /* cone without end caps */
-#define LR_FLAG_DISK 16u       /* flat: u^2 + v^2 <= 1 */
-#define LR_FLAG_TRIANGLE 32u   /* flat: u, v >= 0, u + v <= 1; neither: |u|, |v| <= 1 */
+#define LR_FLAG_SOLID 1u       /* encloses a medium */
+#define LR_FLAG_TRANSPARENT 2u /* its material transmits */
+#define LR_FLAG_OPEN 4u        /* cone without end caps */
+#define LR_FLAG_DISK 8u        /* flat: u^2 + v^2 <= 1 */
+#define LR_FLAG_TRIANGLE 16u   /* flat: u, v >= 0, u + v <= 1; neither: |u|, |v| <= 1 */
 
 /* ---- Kinds of primitive, the high bits of a hit's primitive ---- */
 #define LR_PRIMITIVE_NONE 0u

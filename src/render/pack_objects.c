@@ -422,9 +422,8 @@ lr_status lr_pack_objects(const lr_scene *scene, const lr_settings *settings,
         bool shadow = scene->objects[i].shadow;
         primitives[i].part =
             !shadow ? NO_CASTER : (transparent ? TRANSPARENT_CASTER : OPAQUE_CASTER);
-        uint32_t flags = (shadow ? LR_FLAG_CASTS_SHADOW : 0) |
-                         (primitives[i].encloses ? LR_FLAG_SOLID : 0) |
-                         (transparent ? LR_FLAG_TRANSPARENT : 0);
+        uint32_t flags =
+            (primitives[i].encloses ? LR_FLAG_SOLID : 0) | (transparent ? LR_FLAG_TRANSPARENT : 0);
         set_ids(&primitives[i], i, flags);
         fits = pack_object_record(scene, i, flags, ranks[i], packed);
     }
