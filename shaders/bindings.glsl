@@ -5,7 +5,6 @@
 #include "gpu_layout.h"
 
 layout(constant_id = LR_SPEC_TEXEL_LOADS) const bool texel_loads = true;
-layout(constant_id = LR_SPEC_PRIMARY) const bool primary = false;
 layout(constant_id = LR_SPEC_SPHERES) const bool has_spheres = true;
 layout(constant_id = LR_SPEC_ELLIPSOIDS) const bool has_ellipsoids = true;
 layout(constant_id = LR_SPEC_PLANES) const bool has_planes = true;
@@ -18,10 +17,12 @@ layout(constant_id = LR_SPEC_FOG) const bool has_fog = true;
 layout(constant_id = LR_SPEC_SCATTER) const bool has_scatter = true;
 layout(constant_id = LR_SPEC_FRESNEL) const bool has_fresnel = true;
 layout(constant_id = LR_SPEC_TRANSPARENT) const bool has_transparent = true;
+layout(constant_id = LR_SPEC_TRANSPARENT_PLANES) const bool has_transparent_planes = true;
 layout(constant_id = LR_SPEC_SPECULAR) const bool has_specular = true;
 layout(constant_id = LR_SPEC_PATTERNS) const bool has_patterns = true;
 layout(constant_id = LR_SPEC_SPOTS) const bool has_spots = true;
 layout(constant_id = LR_SPEC_SHUFFLE) const bool has_shuffle = true;
+layout(constant_id = LR_SPEC_TEXEL_QUEUES) const bool texel_queues = true;
 
 layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame; };
 layout(set = 0, binding = LR_BIND_SCENE_TEXEL) uniform usamplerBuffer scene_texels;
@@ -31,10 +32,13 @@ layout(std430, set = 0, binding = LR_BIND_SCENE_ROWS) readonly buffer SceneBlock
 };
 layout(std430, set = 0, binding = LR_BIND_FILM) buffer FilmBlock { uint film[]; };
 layout(std430, set = 0, binding = LR_BIND_COUNTERS) buffer CounterBlock { gpu_counters counters; };
-layout(std430, set = 0, binding = LR_BIND_RAYS_IN) readonly buffer RaysInBlock { gpu_ray rays_in[]; };
-layout(std430, set = 0, binding = LR_BIND_RAYS_OUT) buffer RaysOutBlock { gpu_ray rays_out[]; };
-layout(std430, set = 0, binding = LR_BIND_HITS) buffer HitBlock { gpu_hit hits[]; };
-layout(std430, set = 0, binding = LR_BIND_LIT) buffer LitBlock { uint lit[]; };
+// Queues of gpu_ray and gpu_hit; see queue.glsl.
+layout(std430, set = 0, binding = LR_BIND_RAYS_IN) readonly buffer RaysInBlock { uvec4 rays_in[]; };
+layout(std430, set = 0, binding = LR_BIND_RAYS_OUT) buffer RaysOutBlock { uvec4 rays_out[]; };
+layout(std430, set = 0, binding = LR_BIND_HITS) buffer HitBlock { uvec4 hits[]; };
+
+layout(set = 0, binding = LR_BIND_RAYS_TEXEL) uniform usamplerBuffer ray_texels;
+layout(set = 0, binding = LR_BIND_HITS_TEXEL) uniform usamplerBuffer hit_texels;
 
 layout(push_constant) uniform WorkBlock { gpu_work work; };
 

@@ -11,11 +11,13 @@ struct film_sum {
     uvec3 low;
     uvec3 high;
     uint flags;
+    uint non_finite; // contributions left out
+    uint saturated;  // contributions clipped
 };
 
 film_sum film_zero()
 {
-    return film_sum(uvec3(0u), uvec3(0u), 0u);
+    return film_sum(uvec3(0u), uvec3(0u), 0u, 0u, 0u);
 }
 
 // One channel of a contribution in film steps, truncated; clipped just below 2^28. value >= 0 and
@@ -39,11 +41,9 @@ uvec2 film_fixed(float value)
 void film_accumulate(inout film_sum sum, vec3 value)
 {
     bool finite = ex_is_finite(value.x) && ex_is_finite(value.y) && ex_is_finite(value.z);
-    if (!finite)
-        atomicAdd(counters.non_finite, 1u);
+    sum.non_finite += finite ? 0u : 1u;
     bool above = value.x >= LR_FILM_MAX || value.y >= LR_FILM_MAX || value.z >= LR_FILM_MAX;
-    if (finite && above)
-        atomicAdd(counters.saturated, 1u);
+    sum.saturated += finite && above ? 1u : 0u;
     vec3 kept = finite ? max(value, vec3(0.0)) : vec3(0.0);
     uvec2 r = film_fixed(kept.x), g = film_fixed(kept.y), b = film_fixed(kept.z);
     uvec3 low = uvec3(r.x, g.x, b.x), high = uvec3(r.y, g.y, b.y);
@@ -64,8 +64,11 @@ void film_add_channel(uint at, uint channel, uint low, uint high, inout uint fla
     uint add = high + (old_low + low < low ? 1u : 0u);
     // high + 1 wraps only when high is all ones: then the sum overflows in any case.
     bool wrapped = add < high;
-    uint old_high = atomicAdd(film[at + 2u * channel + 1u], add);
-    if (wrapped || old_high + add < add)
+    if (add != 0u) {
+        uint old_high = atomicAdd(film[at + 2u * channel + 1u], add);
+        wrapped = wrapped || old_high + add < add;
+    }
+    if (wrapped)
         flags |= 1u << (channel & 31u);
 }
 
@@ -78,6 +81,10 @@ void film_add(uint pixel, film_sum sum)
     film_add_channel(at, 2u, sum.low.z, sum.high.z, flags);
     if (flags != 0u)
         atomicOr(film[at + uint(LR_FILM_FLAGS)], flags);
+    if (sum.non_finite != 0u)
+        atomicAdd(counters.non_finite, sum.non_finite);
+    if (sum.saturated != 0u)
+        atomicAdd(counters.saturated, sum.saturated);
 }
 
 #endif

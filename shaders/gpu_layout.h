@@ -32,32 +32,35 @@ typedef struct vec4 {
 #define LR_BIND_RAYS_IN 5     /* gpu_ray[] to trace */
 #define LR_BIND_RAYS_OUT 6    /* gpu_ray[] of the next generation */
 #define LR_BIND_HITS 7        /* gpu_hit[] */
-#define LR_BIND_LIT 8         /* uint[]: indices of the hits that light falls on */
-#define LR_BIND_COUNT 9
+#define LR_BIND_RAYS_TEXEL 8  /* the same buffers as uniform texel buffers, RGBA32UI */
+#define LR_BIND_HITS_TEXEL 9
+#define LR_BIND_COUNT 10
 
 /* ---- Specialisation constants: what a scene does not use is not compiled ---- */
 #define LR_SPEC_TEXEL_LOADS 0
-#define LR_SPEC_PRIMARY 1 /* trace: make camera rays instead of reading a queue */
-#define LR_SPEC_SPHERES 2
+#define LR_SPEC_SPHERES 1
+#define LR_SPEC_FLATS 2
 #define LR_SPEC_ELLIPSOIDS 3
-#define LR_SPEC_PLANES 4
-#define LR_SPEC_FLATS 5
-#define LR_SPEC_BOXES 6
-#define LR_SPEC_CONES 7
-#define LR_SPEC_MEDIA 8       /* some object encloses a medium that rays enter */
-#define LR_SPEC_ABSORPTION 9  /* some medium absorbs */
-#define LR_SPEC_FOG 10
-#define LR_SPEC_SCATTER 11    /* some material reflects or transmits */
-#define LR_SPEC_FRESNEL 12
-#define LR_SPEC_TRANSPARENT 13 /* some shadow caster transmits light */
-#define LR_SPEC_SPECULAR 14
-#define LR_SPEC_PATTERNS 15
-#define LR_SPEC_SPOTS 16
-#define LR_SPEC_SHUFFLE 17 /* share loads within a subgroup */
-#define LR_SPEC_COUNT 18
+#define LR_SPEC_BOXES 4
+#define LR_SPEC_CONES 5
+#define LR_SPEC_PLANES 6
+#define LR_SPEC_MEDIA 7      /* some object encloses a medium that rays enter */
+#define LR_SPEC_ABSORPTION 8 /* some medium absorbs */
+#define LR_SPEC_FOG 9
+#define LR_SPEC_SCATTER 10 /* some material reflects or transmits */
+#define LR_SPEC_FRESNEL 11
+#define LR_SPEC_TRANSPARENT 12 /* some shadow caster transmits light */
+#define LR_SPEC_SPECULAR 13
+#define LR_SPEC_PATTERNS 14
+#define LR_SPEC_SPOTS 15
+#define LR_SPEC_SHUFFLE 16            /* share loads within a subgroup */
+#define LR_SPEC_TEXEL_QUEUES 17       /* as LR_SPEC_TEXEL_LOADS, for the queues */
+#define LR_SPEC_TRANSPARENT_PLANES 18 /* ... that is a plane */
+#define LR_SPEC_COUNT 19
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
+#define LR_BATCH 8 /* primitives that a subgroup shares at a time */
 
 /* ---- The film: exact sums in 64-bit fixed point ----
  * Word 2c and 2c + 1 of a pixel are the low and high half of channel c in steps of
@@ -71,20 +74,21 @@ typedef struct vec4 {
 #define LR_FILM_MAX 268435456.0
 
 /* ---- Numbers the kernels and the host agree on ---- */
-#define LR_T_MAX 1.0e15            /* nothing is hit farther away */
-#define LR_BEYOND 2.0e15           /* a distance that no ray reaches */
-#define LR_OFFSET 3.814697265625e-6 /* 2^-18: how far secondary rays start off, relative */
-#define LR_SHORT_OF 0.999996185302734375 /* 1 - LR_OFFSET: shadow rays stop before the light */
+#define LR_T_MAX 1.0e15                     /* nothing is hit farther away */
+#define LR_BEYOND 2.0e15                    /* a distance that no ray reaches */
+#define LR_OFFSET 3.814697265625e-6         /* 2^-18: how far secondary rays start off, relative */
+#define LR_SHORT_OF 0.999996185302734375    /* 1 - LR_OFFSET: shadow rays stop before the light */
 #define LR_WEIGHT_MIN 9.094947017729282e-13 /* 2^-40: a weight below it is 0 */
-#define LR_COSINE_MIN 1.0e-7       /* a cosine below it is 0 */
-#define LR_ATTENUATION_MIN -80.0    /* 1 / distance^falloff is clamped to 2^-80 .. 2^40 */
+#define LR_COSINE_MIN 1.0e-7                /* a cosine below it is 0 */
+#define LR_ATTENUATION_MIN -80.0            /* 1 / distance^falloff is clamped to 2^-80 .. 2^40 */
 #define LR_ATTENUATION_MAX 40.0
-#define LR_SHADOW_UNIT 1048576.0   /* optical depth in shadows: log2 units of 2^-20 */
+#define LR_SHADOW_UNIT 1048576.0           /* optical depth in shadows: log2 units of 2^-20 */
 #define LR_SHADOW_BITS -9.5367431640625e-7 /* -1 / LR_SHADOW_UNIT */
-#define LR_SHADOW_OPAQUE 41943040u /* 40 of them: nothing gets through */
-#define LR_MEDIA_MAX 8             /* media that may be nested at one point */
-#define LR_PASSES_MAX 255          /* hidden surfaces that one ray may pass */
-#define LR_CHECKER_SNAP 1.0e-4     /* in cells; see pattern.glsl */
+#define LR_SHADOW_OPAQUE 41943040u         /* 40 of them: nothing gets through */
+#define LR_MEDIA_MAX 8                     /* media that may be nested at one point */
+#define LR_PASSES_MAX 255                  /* hidden surfaces that one ray may pass */
+#define LR_CULL_SLACK 0.9999961853027344   /* 1 - 2^-18: bounding balls against rounding */
+#define LR_CHECKER_SNAP 1.0e-4             /* in cells; see pattern.glsl */
 
 /* ---- A primitive's and object's flags ---- */
 #define LR_FLAG_SOLID 1u       /* encloses a medium */
@@ -92,15 +96,9 @@ typedef struct vec4 {
 #define LR_FLAG_OPEN 4u        /* cone without end caps */
 #define LR_FLAG_DISK 8u        /* flat: u^2 + v^2 <= 1 */
 #define LR_FLAG_TRIANGLE 16u   /* flat: u, v >= 0, u + v <= 1; neither: |u|, |v| <= 1 */
+#define LR_FLAG_SHADOW 32u     /* casts shadows */
 
-/* ---- Kinds of primitive, the high bits of a hit's primitive ---- */
-#define LR_PRIMITIVE_NONE 0u
-#define LR_PRIMITIVE_SPHERE 1u
-#define LR_PRIMITIVE_ELLIPSOID 2u
-#define LR_PRIMITIVE_PLANE 3u
-#define LR_PRIMITIVE_FLAT 4u
-#define LR_PRIMITIVE_BOX 5u
-#define LR_PRIMITIVE_CONE 6u
+#define LR_PRIMITIVE_NONE 0xFFFFFFFFu
 
 /* ---- Rows of the scene buffer ---- */
 struct gpu_sphere {
@@ -114,7 +112,7 @@ struct gpu_sphere {
 LR_ROWS(gpu_sphere, 2)
 
 struct gpu_plane {
-    vec3 normal; /* unit */
+    vec3 normal;  /* unit */
     float offset; /* normal . p = offset */
     uint object;
     uint flags;
@@ -140,17 +138,18 @@ LR_ROWS(gpu_flat, 4)
 
 /* Ellipsoid (unit sphere), box (|x|, |y|, |z| <= 1) or cone frustum (axis z from 0 to 1, radius
  * radius_from + z * radius_slope) in a space of its own: x = (row . (p, 1)) * inv_scale. The rows'
- * linear part has entries of at most 1 and carries no scale, so objects of 1e-20 do not overflow. */
+ * linear part has entries of at most 1 and carries no scale, so objects of 1e-20 do not overflow.
+ */
 struct gpu_solid {
     vec4 row0;
     vec4 row1;
     vec4 row2;
     float scale;
     float inv_scale;
-    float radius_from;
-    float radius_slope;
     uint object;
     uint flags;
+    float radius_from; /* only of cones, as is all that follows */
+    float radius_slope;
     uint unused0;
     uint unused1;
 };
@@ -167,7 +166,7 @@ struct gpu_object {
     uint shadow_red; /* -log2(transmit) in LR_SHADOW_UNIT */
     uint shadow_green;
     uint shadow_blue;
-    uint unused1;
+    uint shadow_rank; /* rank if it is solid, else 0: the medium that absorbs light in shadows */
 };
 LR_ROWS(gpu_object, 5)
 
@@ -195,7 +194,7 @@ struct gpu_material {
     vec3 color1;
     float inv_size;
     vec3 pattern_origin;
-    float inv_length2; /* gradient: 1 / |direction|^2 */
+    float inv_length2;      /* gradient: 1 / |direction|^2 */
     vec3 pattern_direction; /* unit but for the gradient */
     uint flags;
     vec3 ambient; /* with the scene's ambient light multiplied in */
@@ -216,9 +215,9 @@ LR_ROWS(gpu_material, 9)
 #define LR_GPU_LIGHT_SHADOWS 4u
 
 struct gpu_light {
-    vec3 position;  /* point, spot */
+    vec3 position;      /* point, spot */
     float half_falloff; /* half the exponent: the kernels know the distance squared */
-    vec3 color;     /* times intensity */
+    vec3 color;         /* times intensity */
     uint flags;
     vec3 direction; /* unit, the way the light travels */
     float cos_angle;
@@ -229,13 +228,14 @@ struct gpu_light {
 };
 LR_ROWS(gpu_light, 4)
 
-/* Where the primitives of one kind are, sorted: first the opaque ones that cast shadows, then the
- * transparent ones that do, then the others. */
+/* All primitives are numbered, kind by kind. A list holds one kind: those from number `begin` up to
+ * `end`; the record of number i is at row base + i * its rows (modulo 2^32). Bounded primitives
+ * come first, and row frame.balls + i is the ball around them: centre, radius squared. */
 struct gpu_list {
-    uint first; /* row */
-    uint count;
-    uint opaque;  /* length of the first part */
-    uint casters; /* length of the first two parts */
+    uint base;
+    uint begin;
+    uint end;
+    uint unused;
 };
 LR_ROWS(gpu_list, 1)
 #ifdef __STDC__
@@ -261,11 +261,12 @@ struct gpu_frame {
     vec3 fog_color;
     float fog_density; /* times log2(e) */
     gpu_list spheres;
-    gpu_list ellipsoids;
-    gpu_list planes;
     gpu_list flats;
+    gpu_list solids; /* the next three together */
+    gpu_list ellipsoids;
     gpu_list boxes;
     gpu_list cones;
+    gpu_list planes;
     uint objects;
     uint materials;
     uint media;
@@ -274,8 +275,12 @@ struct gpu_frame {
     uint inside1;
     uint inside2;
     uint inside3;
+    uint balls;   /* row */
+    uint bounded; /* primitives that have a ball */
+    uint unused0;
+    uint unused1;
 };
-LR_ROWS(gpu_frame, 16)
+LR_ROWS(gpu_frame, 18)
 
 /* ---- What differs from one dispatch to the next (push constants) ---- */
 struct gpu_work {
@@ -284,11 +289,11 @@ struct gpu_work {
     uint tile_width;
     uint tile_height;
     uint first_sample; /* of a primary pass */
-    uint count;  /* rays of a queue pass */
-    uint first;  /* first ray in the queue */
-    uint light;  /* first light and count of a light pass */
+    uint count;        /* rays of a queue pass */
+    uint first;        /* first ray in the queue */
+    uint light;        /* first light and count of a shading pass */
     uint light_count;
-    uint add_ambient; /* 1 in the first light pass */
+    uint first_lights; /* 1 in the first shading pass of the hits: the rest is done once, there */
 };
 
 /* ---- Queues ---- */
@@ -302,12 +307,13 @@ struct gpu_work {
 
 struct gpu_ray {
     vec3 origin;
-    uint pixel; /* in the tile */
+    uint pixel;     /* in the tile */
     vec3 direction; /* unit */
     uint state;
     vec3 weight;
     uint unused;
-    uint media0; /* ranks of the media around the origin, two a word, in no order, 0: none */
+    uint media0; /* only in scenes with media: ranks of the media around the origin, two a word, in
+                    no order, 0: none */
     uint media1;
     uint media2;
     uint media3;
@@ -315,36 +321,21 @@ struct gpu_ray {
 LR_ROWS(gpu_ray, 4)
 
 struct gpu_hit {
-    vec3 position;
-    uint pixel;
-    vec3 normal; /* geometric, unit, outward */
-    uint object;
-    vec3 direction; /* of the ray that hit */
-    uint state;
-    vec3 weight;
-    float offset; /* how far off the surface a ray must start, metres */
-    uint media0;
-    uint media1;
-    uint media2;
-    uint media3;
+    uint ray; /* in the queue */
+    float t;
+    uint primitive;
+    uint unused;
 };
-LR_ROWS(gpu_hit, 5)
+LR_ROWS(gpu_hit, 1)
 
-/* What a pass counts. The first eight words are two indirect dispatches (x, y, z, unused). */
+/* What a pass counts. The first three words are an indirect dispatch. */
 struct gpu_counters {
     uint hit_groups;
     uint hit_groups_y;
     uint hit_groups_z;
-    uint unused0;
-    uint lit_groups;
-    uint lit_groups_y;
-    uint lit_groups_z;
-    uint unused1;
     uint hits;
-    uint lit;
-    uint rays;      /* in the next generation's queue */
-    uint traced;    /* entries that each kernel finished: the host checks them */
-    uint scattered;
+    uint rays;   /* in the next generation's queue */
+    uint traced; /* entries that each kernel finished: the host checks them */
     uint shaded;
     uint reflected; /* rays made, by kind */
     uint refracted;
@@ -358,10 +349,9 @@ struct gpu_counters {
     uint dropped_nesting;
     uint non_finite;
     uint saturated;
-    uint unused2;
-    uint unused3;
+    uint made; /* camera rays */
 };
-LR_ROWS(gpu_counters, 7)
+LR_ROWS(gpu_counters, 5)
 
 /* ---- The start-up self-test ---- */
 #define LR_SELF_TEST_COUNT 256

@@ -76,30 +76,27 @@ vec3 solid_normal(gpu_solid s, vec3 n)
     return ex_normalize(s.row0.xyz * n.x + s.row1.xyz * n.y + s.row2.xyz * n.z);
 }
 
-vec2 intersect_ellipsoid(vec3 o, vec3 d, gpu_solid s)
+vec2 intersect_ellipsoid(vec3 so, vec3 sd)
 {
-    vec3 sd = solid_direction(s, d);
-    return intersect_unit_sphere(solid_point(s, o), sd, ex_rcp(ex_dot(sd, sd))) * s.scale;
+    return intersect_unit_sphere(so, sd, ex_rcp(ex_dot(sd, sd)));
 }
 
 // Slabs (Kay and Kajiya, 1986).
-vec2 intersect_box(vec3 o, vec3 d, gpu_solid s)
+vec2 intersect_box(vec3 so, vec3 sd)
 {
-    vec3 so = solid_point(s, o), sd = solid_direction(s, d);
     vec3 inverse = vec3(ex_rcp(away_from_zero(sd.x)), ex_rcp(away_from_zero(sd.y)),
                         ex_rcp(away_from_zero(sd.z)));
     vec3 low = (vec3(-1.0) - so) * inverse, high = (vec3(1.0) - so) * inverse;
     vec3 near = min(low, high), far = max(low, high);
     float first = max(near.x, max(near.y, near.z)), last = min(far.x, min(far.y, far.z));
-    return first <= last ? vec2(first, last) * s.scale : miss;
+    return first <= last ? vec2(first, last) : miss;
 }
 
 // x^2 + y^2 = r(z)^2 with r(z) = radius_from + z radius_slope, cut off at z = 0 and z = 1, with or
 // without the end caps. The origin is first moved to the point nearest to the middle of the axis:
 // the textbook quadratic loses its digits when the cone is far off.
-vec2 intersect_cone(vec3 o, vec3 d, gpu_solid s)
+vec2 intersect_cone(vec3 so, vec3 sd, gpu_solid s)
 {
-    vec3 so = solid_point(s, o), sd = solid_direction(s, d);
     float shift = ex_dot(vec3(0.0, 0.0, 0.5) - so, sd) * ex_rcp(ex_dot(sd, sd));
     vec3 q = so + sd * shift;
     float r = s.radius_from + s.radius_slope * q.z, dr = s.radius_slope * sd.z;
@@ -127,7 +124,27 @@ vec2 intersect_cone(vec3 o, vec3 d, gpu_solid s)
                       min(has_0 ? t0 : none, has_1 ? t1 : none));
     float last = max(max(has_a ? ta : -none, has_b ? tb : -none),
                      max(has_0 ? t0 : -none, has_1 ? t1 : -none));
-    return first <= last ? vec2(first + shift, last + shift) * s.scale : miss;
+    return first <= last ? vec2(first + shift, last + shift) : miss;
+}
+
+bool is_in(gpu_list list, uint i)
+{
+    return i >= list.begin && i < list.end;
+}
+
+// Solids share one test because on software devices every branch is paid for, and most of the cost
+// lies in what they have in common.
+vec2 intersect_solid(vec3 o, vec3 d, gpu_solid s, uint i)
+{
+    vec3 so = solid_point(s, o), sd = solid_direction(s, d);
+    vec2 crossing = miss;
+    if (has_ellipsoids && is_in(frame.ellipsoids, i))
+        crossing = intersect_ellipsoid(so, sd);
+    if (has_boxes && is_in(frame.boxes, i))
+        crossing = intersect_box(so, sd);
+    if (has_cones && is_in(frame.cones, i))
+        crossing = intersect_cone(so, sd, s);
+    return crossing * s.scale;
 }
 
 // Which face of the unit box p lies on, as its outward normal.

@@ -19,37 +19,40 @@ vec4 scene_row_float(uint row)
     return uintBitsToFloat(scene_row(row));
 }
 
-gpu_sphere load_sphere(uint index)
+// The primitive number i; gpu_list tells how the numbers are given.
+gpu_sphere load_sphere(uint i)
 {
-    uint at = frame.spheres.first + 2u * index;
+    uint at = frame.spheres.base + 2u * i;
     vec4 a = scene_row_float(at);
     uvec4 b = scene_row(at + 1u);
     return gpu_sphere(a.xyz, a.w, uintBitsToFloat(b.x), b.y, b.z, b.w);
 }
 
-gpu_plane load_plane(uint index)
+gpu_plane load_plane(uint i)
 {
-    uint at = frame.planes.first + 2u * index;
+    uint at = frame.planes.base + 2u * i;
     vec4 a = scene_row_float(at);
     uvec4 b = scene_row(at + 1u);
     return gpu_plane(a.xyz, a.w, b.x, b.y, b.z, b.w);
 }
 
-gpu_flat load_flat(uint index)
+gpu_flat load_flat(uint i)
 {
-    uint at = frame.flats.first + 4u * index;
+    uint at = frame.flats.base + 4u * i;
     vec4 a = scene_row_float(at), b = scene_row_float(at + 1u), c = scene_row_float(at + 2u);
     uvec4 d = scene_row(at + 3u);
     return gpu_flat(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, d.x, d.y, d.z, d.w);
 }
 
-gpu_solid load_solid(uint base, uint index)
+gpu_solid load_solid(uint i)
 {
-    uint at = base + 5u * index;
+    uint at = frame.solids.base + 5u * i;
     vec4 a = scene_row_float(at), b = scene_row_float(at + 1u), c = scene_row_float(at + 2u);
-    vec4 d = scene_row_float(at + 3u);
-    uvec4 e = scene_row(at + 4u);
-    return gpu_solid(a, b, c, d.x, d.y, d.z, d.w, e.x, e.y, e.z, e.w);
+    uvec4 d = scene_row(at + 3u), e = uvec4(0u);
+    if (has_cones)
+        e = scene_row(at + 4u);
+    return gpu_solid(a, b, c, uintBitsToFloat(d.x), uintBitsToFloat(d.y), d.z, d.w,
+                     uintBitsToFloat(e.x), uintBitsToFloat(e.y), e.z, e.w);
 }
 
 // World to object space, in rows.
@@ -67,9 +70,10 @@ uvec3 load_object_ids(uint index)
     return scene_row(frame.objects + 5u * index + 3u).xyz;
 }
 
-uvec3 load_object_shadow(uint index)
+// What an object takes from light in shadows, and its rank as a medium there.
+uvec4 load_object_shadow(uint index)
 {
-    return scene_row(frame.objects + 5u * index + 4u).xyz;
+    return scene_row(frame.objects + 5u * index + 4u);
 }
 
 gpu_medium load_medium(uint rank)
@@ -97,67 +101,6 @@ gpu_light load_light(uint index)
     uvec4 d = scene_row(at + 3u);
     return gpu_light(a.xyz, a.w, b.xyz, floatBitsToUint(b.w), c.xyz, c.w, uintBitsToFloat(d.x), d.y,
                      d.z, d.w);
-}
-
-// Loops over all primitives of a kind take them in batches: each invocation of a subgroup loads one
-// and the others get it by shuffles, because a load is paid per invocation on software devices, and a
-// shuffle is one instruction. So all invocations must be active in such a loop.
-uint batch_size()
-{
-    return has_shuffle ? gl_SubgroupSize : 1u;
-}
-
-// What this invocation loads of the batch that begins at `first`.
-uint batch_index(uint first, uint end)
-{
-    return has_shuffle ? min(first + gl_SubgroupInvocationID, end - 1u) : first;
-}
-
-float share(float x, uint lane)
-{
-    return has_shuffle ? subgroupShuffle(x, lane) : x;
-}
-
-uint share(uint x, uint lane)
-{
-    return has_shuffle ? subgroupShuffle(x, lane) : x;
-}
-
-vec3 share(vec3 v, uint lane)
-{
-    return vec3(share(v.x, lane), share(v.y, lane), share(v.z, lane));
-}
-
-vec4 share(vec4 v, uint lane)
-{
-    return vec4(share(v.x, lane), share(v.y, lane), share(v.z, lane), share(v.w, lane));
-}
-
-gpu_sphere share(gpu_sphere s, uint lane)
-{
-    return gpu_sphere(share(s.center, lane), share(s.inv_radius, lane), share(s.radius, lane),
-                      share(s.object, lane), 0u, 0u);
-}
-
-gpu_plane share(gpu_plane p, uint lane)
-{
-    return gpu_plane(share(p.normal, lane), share(p.offset, lane), share(p.object, lane), 0u, 0u,
-                     0u);
-}
-
-gpu_flat share(gpu_flat f, uint lane)
-{
-    return gpu_flat(share(f.normal, lane), share(f.offset, lane), share(f.u, lane),
-                    share(f.u_offset, lane), share(f.v, lane), share(f.v_offset, lane),
-                    share(f.object, lane), share(f.flags, lane), 0u, 0u);
-}
-
-gpu_solid share(gpu_solid s, uint lane)
-{
-    return gpu_solid(share(s.row0, lane), share(s.row1, lane), share(s.row2, lane),
-                     share(s.scale, lane), share(s.inv_scale, lane), share(s.radius_from, lane),
-                     share(s.radius_slope, lane), share(s.object, lane), share(s.flags, lane), 0u,
-                     0u);
 }
 
 #endif

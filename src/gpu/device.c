@@ -279,15 +279,16 @@ static lr_status choose(lr_device *device, const char *select, lr_error *error)
     return LR_OK;
 }
 
-static bool has_subgroup_shuffle(const lr_vk *vk, VkPhysicalDevice physical)
+static uint32_t get_shuffle_size(const lr_vk *vk, VkPhysicalDevice physical)
 {
     VkPhysicalDeviceSubgroupProperties subgroup = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
     VkPhysicalDeviceProperties2 properties = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &subgroup};
     vk->vkGetPhysicalDeviceProperties2(physical, &properties);
-    return (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) &&
-           (subgroup.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT);
+    bool shuffles = (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) &&
+                    (subgroup.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT);
+    return shuffles ? subgroup.subgroupSize : 1;
 }
 
 static lr_status create_device(lr_device *device, lr_error *error)
@@ -295,7 +296,7 @@ static lr_status create_device(lr_device *device, lr_error *error)
     lr_status status = LR_OK;
     lr_vk *vk = &device->vk;
     device->queue_family = find_queue_family(vk, device->physical);
-    device->subgroup_shuffle = has_subgroup_shuffle(vk, device->physical);
+    device->shuffle_size = get_shuffle_size(vk, device->physical);
     vk->vkGetPhysicalDeviceMemoryProperties(device->physical, &device->memory);
     float priority = 1;
     VkDeviceQueueCreateInfo queue = {

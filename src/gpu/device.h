@@ -21,7 +21,7 @@ struct lr_device {
     VkFence fence;
     lr_spirv_modes modes; /* float-control modes that the device offers */
     lr_device_info info;
-    bool subgroup_shuffle; /* compute subgroups can shuffle */
+    uint32_t shuffle_size; /* invocations of a compute subgroup if they can shuffle, else 1 */
     bool exact;            /* passed the arithmetic self-test */
     double open_seconds;
     uint32_t message_count; /* validation messages */

@@ -11,10 +11,10 @@
  * distorted for floats. */
 #define THINNESS_MIN 1e-9
 
-typedef enum list_kind { SPHERES, ELLIPSOIDS, PLANES, FLATS, BOXES, CONES, LIST_COUNT } list_kind;
+#define BALL_SLACK 0x1p-18
 
-/* How the lists are sorted (gpu_layout.h, struct gpu_frame). */
-typedef enum shadow_part { OPAQUE_CASTER, TRANSPARENT_CASTER, NO_CASTER } shadow_part;
+/* In the order of the primitives' numbers; LR_SPEC_SPHERES + kind tells whether there are any. */
+typedef enum list_kind { SPHERES, FLATS, ELLIPSOIDS, BOXES, CONES, PLANES, LIST_COUNT } list_kind;
 
 typedef union primitive_record {
     struct gpu_sphere sphere;
@@ -26,9 +26,8 @@ typedef union primitive_record {
 typedef struct primitive {
     primitive_record record;
     list_kind list;
-    shadow_part part;
-    uint32_t rows;
     bool encloses; /* a medium, if its material transmits */
+    vec4 ball;     /* holds it, if it is bounded: centre, radius squared */
 } primitive;
 
 static lr_transform inverse_of(const lr_transform *t)
@@ -74,6 +73,26 @@ static vec4 pack_row(const double row[4], double scale)
                   (float)(row[3] * scale)};
 }
 
+static vec4 pack_ball(lr_vec3 center, double radius)
+{
+    double slack = BALL_SLACK * (radius + lr_vec3_length(center)) + 1e-15;
+    vec3 c = lr_pack_vec3(center);
+    return (vec4){c.x, c.y, c.z, (float)((radius + slack) * (radius + slack))};
+}
+
+/* A ball around points, with some room for the rounding of kernels whose rays may start as far off
+ * as the ball's own centre is from the world's. */
+static vec4 ball_around(const lr_vec3 *points, unsigned count)
+{
+    lr_vec3 center = {0, 0, 0};
+    for (unsigned i = 0; i < count; i++)
+        center = lr_vec3_add(center, lr_vec3_scale(points[i], 1.0 / count));
+    double radius = 0;
+    for (unsigned i = 0; i < count; i++)
+        radius = fmax(radius, lr_vec3_length(lr_vec3_sub(points[i], center)));
+    return pack_ball(center, radius);
+}
+
 /* A solid whose own space is reached from object space by `canonical`. False when it is too thin.
  */
 static bool pack_solid(const lr_object *object, lr_transform canonical, list_kind list,
@@ -91,7 +110,6 @@ static bool pack_solid(const lr_object *object, lr_transform canonical, list_kin
         return false;
     double scale = 1 / longest;
     out->list = list;
-    out->rows = sizeof out->record.solid / 16;
     out->encloses = true;
     out->record.solid = (struct gpu_solid){
         .row0 = pack_row(t.m[0], scale),
@@ -100,6 +118,13 @@ static bool pack_solid(const lr_object *object, lr_transform canonical, list_kin
         .scale = (float)scale,
         .inv_scale = (float)longest,
     };
+    lr_transform back;
+    lr_transform_inverse(&t, &back);
+    lr_vec3 corners[8];
+    for (int i = 0; i < 8; i++)
+        corners[i] = lr_transform_point(
+            &back, (lr_vec3){i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : (list == CONES ? 0 : -1)});
+    out->ball = ball_around(corners, 8);
     return true;
 }
 
@@ -114,10 +139,10 @@ static bool pack_sphere(const lr_object *object, primitive *out)
     radius *= scale;
     lr_vec3 center = lr_transform_point(&object->to_world, object->sphere.center);
     out->list = SPHERES;
-    out->rows = sizeof out->record.sphere / 16;
     out->encloses = true;
     out->record.sphere = (struct gpu_sphere){
         .center = lr_pack_vec3(center), .inv_radius = (float)(1 / radius), .radius = (float)radius};
+    out->ball = pack_ball(center, radius);
     return true;
 }
 
@@ -129,7 +154,6 @@ static bool pack_plane(const lr_object *object, primitive *out)
     point = lr_transform_point(&object->to_world, point);
     lr_vec3 n = lr_vec3_normalize(lr_transform_normal(&inverse, object->plane.normal));
     out->list = PLANES;
-    out->rows = sizeof out->record.plane / 16;
     out->encloses = true;
     out->record.plane =
         (struct gpu_plane){.normal = lr_pack_vec3(n), .offset = (float)lr_vec3_dot(n, point)};
@@ -150,7 +174,6 @@ static bool pack_flat(const lr_object *object, lr_vec3 origin, lr_vec3 e1, lr_ve
     lr_vec3 v = lr_vec3_scale(lr_vec3_cross(normal, e1), k);
     lr_vec3 n = lr_vec3_normalize(normal);
     out->list = FLATS;
-    out->rows = sizeof out->record.flat / 16;
     out->encloses = false;
     out->record.flat = (struct gpu_flat){
         .normal = lr_pack_vec3(n),
@@ -161,6 +184,15 @@ static bool pack_flat(const lr_object *object, lr_vec3 origin, lr_vec3 e1, lr_ve
         .v_offset = (float)-lr_vec3_dot(v, origin),
         .flags = shape,
     };
+    lr_vec3 e3 = lr_vec3_add(e1, e2), e4 = lr_vec3_sub(e1, e2);
+    if (shape == LR_FLAG_TRIANGLE) {
+        lr_vec3 corners[] = {origin, lr_vec3_add(origin, e1), lr_vec3_add(origin, e2)};
+        out->ball = ball_around(corners, 3);
+    } else {
+        lr_vec3 corners[] = {lr_vec3_add(origin, e3), lr_vec3_sub(origin, e3),
+                             lr_vec3_add(origin, e4), lr_vec3_sub(origin, e4)};
+        out->ball = ball_around(corners, 4);
+    }
     return isfinite(k);
 }
 
@@ -370,32 +402,47 @@ static bool pack_object_record(const lr_scene *scene, uint32_t index, uint32_t f
         .shadow_red = shadow_depth(transmit.x),
         .shadow_green = shadow_depth(transmit.y),
         .shadow_blue = shadow_depth(transmit.z),
+        .shadow_rank = flags & LR_FLAG_SOLID ? rank : 0,
     };
     return lr_pack_rows(packed, &record, sizeof record / 16) != UINT32_MAX;
 }
 
-/* Packs one kind's list in its three parts; list describes it. */
-static bool pack_list(const primitive *primitives, uint32_t count, list_kind kind, gpu_list *list,
-                      lr_packed_scene *packed)
+/* Packs the records kind by kind, and then the balls around the bounded ones. */
+static bool pack_lists(const primitive *primitives, uint32_t count, lr_packed_scene *packed)
 {
-    uint32_t ends[3], written = 0;
-    list->first = packed->row_count;
-    for (shadow_part part = OPAQUE_CASTER; part <= NO_CASTER; part++) {
+    static const uint32_t rows[LIST_COUNT] = {
+        [SPHERES] = sizeof(struct gpu_sphere) / 16,   [FLATS] = sizeof(struct gpu_flat) / 16,
+        [ELLIPSOIDS] = sizeof(struct gpu_solid) / 16, [BOXES] = sizeof(struct gpu_solid) / 16,
+        [CONES] = sizeof(struct gpu_solid) / 16,      [PLANES] = sizeof(struct gpu_plane) / 16,
+    };
+    struct gpu_frame *frame = &packed->frame;
+    gpu_list *lists[LIST_COUNT] = {&frame->spheres, &frame->flats, &frame->ellipsoids,
+                                   &frame->boxes,   &frame->cones, &frame->planes};
+    uint32_t number = 0;
+    for (list_kind kind = SPHERES; kind < LIST_COUNT; kind++) {
+        gpu_list *list = lists[kind];
+        list->base = packed->row_count - rows[kind] * number;
+        list->begin = number;
         for (uint32_t i = 0; i < count; i++) {
-            const primitive *p = &primitives[i];
-            if (p->list != kind || p->part != part)
+            if (primitives[i].list != kind)
                 continue;
-            if (lr_pack_rows(packed, &p->record, p->rows) == UINT32_MAX)
+            if (lr_pack_rows(packed, &primitives[i].record, rows[kind]) == UINT32_MAX)
                 return false;
-            written++;
+            number++;
         }
-        ends[part] = written;
+        list->end = number;
+        packed->constants[LR_SPEC_SPHERES + kind] = list->end > list->begin;
     }
-    list->count = written;
-    list->opaque = ends[OPAQUE_CASTER];
-    list->casters = ends[TRANSPARENT_CASTER];
-    packed->constants[LR_SPEC_SPHERES + kind] = written > 0;
-    packed->constants[LR_SPEC_TRANSPARENT] |= list->casters > list->opaque;
+    /* The solids' records stand together, so they have one base. */
+    frame->solids =
+        (gpu_list){frame->ellipsoids.base, frame->ellipsoids.begin, frame->cones.end, 0};
+    frame->bounded = frame->planes.begin;
+    frame->balls = packed->row_count;
+    for (list_kind kind = SPHERES; kind < PLANES; kind++)
+        for (uint32_t i = 0; i < count; i++)
+            if (primitives[i].list == kind &&
+                lr_pack_rows(packed, &primitives[i].ball, 1) == UINT32_MAX)
+                return false;
     return true;
 }
 
@@ -420,18 +467,16 @@ lr_status lr_pack_objects(const lr_scene *scene, const lr_settings *settings,
     for (uint32_t i = 0; fits && i < count && !status; i++) {
         bool transparent = !lr_color_is_black(material_of(scene, i)->transmit);
         bool shadow = scene->objects[i].shadow;
-        primitives[i].part =
-            !shadow ? NO_CASTER : (transparent ? TRANSPARENT_CASTER : OPAQUE_CASTER);
-        uint32_t flags =
-            (primitives[i].encloses ? LR_FLAG_SOLID : 0) | (transparent ? LR_FLAG_TRANSPARENT : 0);
+        uint32_t flags = (primitives[i].encloses ? LR_FLAG_SOLID : 0) |
+                         (transparent ? LR_FLAG_TRANSPARENT : 0) | (shadow ? LR_FLAG_SHADOW : 0);
+        packed->constants[LR_SPEC_TRANSPARENT] |= shadow && transparent;
+        packed->constants[LR_SPEC_TRANSPARENT_PLANES] |=
+            shadow && transparent && primitives[i].list == PLANES;
         set_ids(&primitives[i], i, flags);
         fits = pack_object_record(scene, i, flags, ranks[i], packed);
     }
-    struct gpu_frame *frame = &packed->frame;
-    gpu_list *lists[LIST_COUNT] = {&frame->spheres, &frame->ellipsoids, &frame->planes,
-                                   &frame->flats,   &frame->boxes,      &frame->cones};
-    for (list_kind kind = SPHERES; fits && !status && kind < LIST_COUNT; kind++)
-        fits = pack_list(primitives, count, kind, lists[kind], packed);
+    if (fits && !status)
+        fits = pack_lists(primitives, count, packed);
     free(primitives);
     free(ranks);
     if (!fits)

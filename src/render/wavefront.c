@@ -2,9 +2,9 @@
 
 #include <string.h>
 
+#include "camera.spv.h"
 #include "gpu/commands.h"
-#include "light.spv.h"
-#include "scatter.spv.h"
+#include "shade.spv.h"
 #include "trace.spv.h"
 
 /* Rays, towards lights too, times primitives that one pass may test: some 50 ms on two cores. */
@@ -14,7 +14,9 @@
  * (docs/drivers.md); this stays far below. */
 #define LOOPS_PER_INVOCATION 16384
 
-#define CHUNK_DEFAULT 262144
+/* Rays handed to a device at once: as many as it takes to fill a GPU, or as caches hold. */
+#define CHUNK_GPU 262144
+#define CHUNK_SOFTWARE 65536
 #define CHUNK_MIN 256
 
 static uint32_t at_least(uint32_t value, uint32_t least)
@@ -37,9 +39,15 @@ static void plan(lr_wavefront *w, const lr_render_options *options)
 {
     uint32_t primitives = w->scene->primitive_count + 8, lights = w->scene->light_count;
     uint32_t fitting = TESTS_PER_PASS / primitives / (1 + lights);
-    uint32_t chunk = at_least(at_most(fitting, CHUNK_DEFAULT), CHUNK_MIN);
+    bool software = w->device->info.software;
+    uint32_t chunk = at_most(fitting, software ? CHUNK_SOFTWARE : CHUNK_GPU);
+    chunk = at_least(chunk, CHUNK_MIN);
+    /* A tile whose samples all fit in half a chunk keeps the film in the cache as well. */
+    uint32_t samples = at_least(w->scene->frame.samples, 1);
     w->tile_size = 256;
-    while (w->tile_size > 8 && w->tile_size * w->tile_size > chunk)
+    while (w->tile_size > 8 &&
+           (w->tile_size * w->tile_size > chunk ||
+            (software && w->tile_size > 64 && w->tile_size * w->tile_size > chunk / 2 / samples)))
         w->tile_size /= 2;
     if (options->chunk_rays)
         chunk = options->chunk_rays;
@@ -54,23 +62,25 @@ static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *er
 {
     uint32_t constants[LR_SPEC_COUNT];
     memcpy(constants, w->scene->constants, sizeof constants);
+    uint32_t limit = w->device->limits.maxTexelBufferElements;
+    VkDeviceSize queue_size = 2 * sizeof(struct gpu_ray) * (VkDeviceSize)w->chunk_rays;
     constants[LR_SPEC_TEXEL_LOADS] = texel_loads;
-    constants[LR_SPEC_SHUFFLE] = w->device->subgroup_shuffle;
-    constants[LR_SPEC_PRIMARY] = 1;
-    lr_program_desc desc = {trace_spv, sizeof trace_spv / 4, constants, LR_SPEC_COUNT};
-    lr_status status = lr_program_create(w->device, &w->layout, &desc, &w->primary, error);
-    constants[LR_SPEC_PRIMARY] = 0;
-    if (!status && constants[LR_SPEC_SCATTER]) {
-        status = lr_program_create(w->device, &w->layout, &desc, &w->trace, error);
-        desc.words = scatter_spv;
-        desc.word_count = sizeof scatter_spv / 4;
-        if (!status)
-            status = lr_program_create(w->device, &w->layout, &desc, &w->scatter, error);
+    constants[LR_SPEC_TEXEL_QUEUES] = texel_loads && queue_size / 16 <= limit;
+    constants[LR_SPEC_SHUFFLE] = w->device->shuffle_size >= LR_BATCH;
+    const struct {
+        const uint32_t *words;
+        size_t size;
+        VkPipeline *program;
+    } wanted[] = {
+        {camera_spv, sizeof camera_spv, &w->camera},
+        {trace_spv, sizeof trace_spv, &w->trace},
+        {shade_spv, sizeof shade_spv, &w->shade},
+    };
+    lr_status status = LR_OK;
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted && !status; i++) {
+        lr_program_desc desc = {wanted[i].words, wanted[i].size / 4, constants, LR_SPEC_COUNT};
+        status = lr_program_create(w->device, &w->layout, &desc, wanted[i].program, error);
     }
-    desc.words = light_spv;
-    desc.word_count = sizeof light_spv / 4;
-    if (!status)
-        status = lr_program_create(w->device, &w->layout, &desc, &w->light, error);
     return status;
 }
 
@@ -89,10 +99,11 @@ static lr_status create_buffers(lr_wavefront *w, lr_error *error)
         {&w->film_host, LR_BUFFER_HOST, film_size, "the film"},
         {&w->counters, LR_BUFFER_STORAGE, sizeof(struct gpu_counters), "the counters"},
         {&w->counters_host, LR_BUFFER_HOST, sizeof(struct gpu_counters), "the counters"},
-        {&w->hits, LR_BUFFER_STORAGE, sizeof(struct gpu_hit) * (VkDeviceSize)w->chunk_rays,
+        {&w->hits, LR_BUFFER_TEXEL, sizeof(struct gpu_hit) * (VkDeviceSize)w->chunk_rays,
          "the hits"},
-        {&w->lit, LR_BUFFER_STORAGE, 4ull * w->chunk_rays, "the list of lit hits"},
-        {&w->none, LR_BUFFER_STORAGE, 256, "nothing"},
+        {&w->queues[0].rays, LR_BUFFER_TEXEL, sizeof(struct gpu_ray) * (VkDeviceSize)w->chunk_rays,
+         "the queue of camera rays"},
+        {&w->none, LR_BUFFER_TEXEL, 256, "nothing"},
     };
     lr_status status = LR_OK;
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted && !status; i++)
@@ -114,42 +125,50 @@ static lr_status create_layout(lr_wavefront *w, lr_error *error)
         types[i] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     types[LR_BIND_FRAME] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     types[LR_BIND_SCENE_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+    types[LR_BIND_RAYS_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+    types[LR_BIND_HITS_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
     lr_layout_desc desc = {types, LR_BIND_COUNT, sizeof(struct gpu_work), LR_GENERATIONS_MAX};
     return lr_layout_create(w->device, &desc, &w->layout, error);
+}
+
+static lr_status create_set(lr_wavefront *w, const lr_buffer *rays_in, const lr_buffer *rays_out,
+                            VkDescriptorSet *set, lr_error *error)
+{
+    const lr_buffer *buffers[LR_BIND_COUNT] = {
+        [LR_BIND_FRAME] = &w->frame,
+        [LR_BIND_SCENE_TEXEL] = w->rows.view ? &w->rows : &w->none,
+        [LR_BIND_SCENE_ROWS] = &w->rows,
+        [LR_BIND_FILM] = &w->film,
+        [LR_BIND_COUNTERS] = &w->counters,
+        [LR_BIND_RAYS_IN] = rays_in,
+        [LR_BIND_RAYS_OUT] = rays_out,
+        [LR_BIND_HITS] = &w->hits,
+        [LR_BIND_RAYS_TEXEL] = rays_in->view ? rays_in : &w->none,
+        [LR_BIND_HITS_TEXEL] = w->hits.view ? &w->hits : &w->none,
+    };
+    return lr_set_create(w->device, &w->layout, buffers, set, error);
 }
 
 /* Makes the set that traces generation g into generation g + 1, and the queue of the latter. */
 static lr_status open_generation(lr_wavefront *w, uint32_t g, lr_error *error)
 {
-    if (w->queues[g].set)
+    lr_queue *queue = &w->queues[g], *next = queue + 1;
+    if (queue->set)
         return LR_OK;
     bool children = w->scene->constants[LR_SPEC_SCATTER];
     lr_status status = LR_OK;
-    lr_queue *next = &w->queues[g + 1];
     if (children)
-        status = lr_buffer_create(w->device, LR_BUFFER_STORAGE,
+        status = lr_buffer_create(w->device, LR_BUFFER_TEXEL,
                                   2 * sizeof(struct gpu_ray) * (VkDeviceSize)w->chunk_rays,
                                   "the queue of rays", &next->rays, error);
-    if (status)
-        return status;
-    const lr_buffer *buffers[LR_BIND_COUNT] = {
-        [LR_BIND_FRAME] = &w->frame,
-        [LR_BIND_SCENE_TEXEL] = &w->rows,
-        [LR_BIND_SCENE_ROWS] = &w->rows,
-        [LR_BIND_FILM] = &w->film,
-        [LR_BIND_COUNTERS] = &w->counters,
-        [LR_BIND_RAYS_IN] = g > 0 ? &w->queues[g].rays : &w->none,
-        [LR_BIND_RAYS_OUT] = children ? &next->rays : &w->none,
-        [LR_BIND_HITS] = &w->hits,
-        [LR_BIND_LIT] = &w->lit,
-    };
-    return lr_set_create(w->device, &w->layout, buffers, &w->queues[g].set, error);
+    if (!status)
+        status = create_set(w, &queue->rays, children ? &next->rays : &w->none, &queue->set, error);
+    return status;
 }
 
 static void reset_counters(lr_wavefront *w)
 {
-    struct gpu_counters zero = {
-        .hit_groups_y = 1, .hit_groups_z = 1, .lit_groups_y = 1, .lit_groups_z = 1};
+    struct gpu_counters zero = {.hit_groups_y = 1, .hit_groups_z = 1};
     lr_commands_write(w->device, &w->counters, &zero, sizeof zero);
 }
 
@@ -161,10 +180,8 @@ static lr_status warm_up(lr_wavefront *w, lr_error *error)
         return status;
     struct gpu_work nothing = {0};
     reset_counters(w);
-    const VkPipeline programs[] = {w->primary, w->trace, w->scatter, w->light};
+    const VkPipeline programs[] = {w->camera, w->trace, w->shade};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) {
-        if (!programs[i])
-            continue;
         lr_commands_barrier(w->device);
         lr_commands_dispatch(w->device, &w->layout, programs[i], w->queues[0].set, &nothing, 1, 1,
                              1);
@@ -183,6 +200,8 @@ lr_status lr_wavefront_create(lr_device *device, const lr_packed_scene *scene,
     lr_status status = create_layout(w, error);
     if (!status)
         status = create_buffers(w, error);
+    if (!status)
+        status = create_set(w, &w->none, &w->queues[0].rays, &w->camera_set, error);
     if (!status)
         status = open_generation(w, 0, error);
     double uploaded = lr_now();
@@ -203,13 +222,13 @@ void lr_wavefront_destroy(lr_wavefront *wavefront)
     lr_wavefront *w = wavefront;
     if (!w->device)
         return;
-    VkPipeline programs[] = {w->primary, w->trace, w->scatter, w->light};
+    VkPipeline programs[] = {w->camera, w->trace, w->shade};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         if (programs[i])
             w->device->vk.vkDestroyPipeline(w->device->handle, programs[i], NULL);
     lr_layout_destroy(w->device, &w->layout);
-    lr_buffer *buffers[] = {&w->frame,         &w->rows, &w->film, &w->film_host, &w->counters,
-                            &w->counters_host, &w->hits, &w->lit,  &w->none};
+    lr_buffer *buffers[] = {&w->frame,    &w->rows,          &w->film, &w->film_host,
+                            &w->counters, &w->counters_host, &w->hits, &w->none};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         lr_buffer_destroy(w->device, buffers[i]);
     for (uint32_t i = 0; i < LR_GENERATIONS_MAX; i++)
@@ -217,46 +236,42 @@ void lr_wavefront_destroy(lr_wavefront *wavefront)
     *w = (lr_wavefront){0};
 }
 
-/* Light on the hits of a pass: in the scenes that scatter on the listed ones, else on all. */
-static void record_light(lr_wavefront *w, struct gpu_work *work, VkDescriptorSet set)
+/* Shades the hits of a pass: in several dispatches when there are many lights. */
+static void record_shade(lr_wavefront *w, struct gpu_work *work, VkDescriptorSet set)
 {
-    bool listed = w->scene->constants[LR_SPEC_SCATTER];
-    size_t groups = listed ? offsetof(struct gpu_counters, lit_groups)
-                           : offsetof(struct gpu_counters, hit_groups);
     work->light = 0;
-    work->add_ambient = 1;
+    work->first_lights = 1;
     do {
         work->light_count = at_most(w->lights_at_once, w->scene->light_count - work->light);
         lr_commands_barrier(w->device);
-        lr_commands_dispatch_indirect(w->device, &w->layout, w->light, set, work, &w->counters,
-                                      groups);
+        lr_commands_dispatch_indirect(w->device, &w->layout, w->shade, set, work, &w->counters,
+                                      offsetof(struct gpu_counters, hit_groups));
         work->light += work->light_count;
-        work->add_ambient = 0;
+        work->first_lights = 0;
     } while (work->light < w->scene->light_count);
 }
 
-static uint32_t light_dispatches(const lr_wavefront *w)
+static uint32_t shade_dispatches(const lr_wavefront *w)
 {
     return at_least(groups_for(w->scene->light_count, w->lights_at_once), 1);
 }
 
 /* Adds a pass's counts to the statistics, after checking that no kernel stopped half-way and no
  * queue overflowed: drivers have done either without a word. */
-static lr_status take_counts(lr_wavefront *w, uint32_t traced, uint32_t generation, lr_error *error)
+static lr_status take_counts(lr_wavefront *w, uint32_t rays, uint32_t generation, lr_error *error)
 {
     const struct gpu_counters *c = w->counters_host.mapped;
-    bool scatters = w->scene->constants[LR_SPEC_SCATTER];
-    uint32_t lit = scatters ? c->lit : c->hits;
-    if (c->traced != traced || c->hits > traced || (scatters && c->scattered != c->hits) ||
-        c->rays > 2 * w->chunk_rays || c->shaded != lit * light_dispatches(w))
+    uint32_t made = generation == 0 ? rays : 0, shaded = c->hits * shade_dispatches(w);
+    if (c->made != made || c->traced != rays || c->hits > rays || c->rays > 2 * w->chunk_rays ||
+        c->shaded != shaded)
         return lr_fail(error, LR_ERROR_DEVICE,
-                       "the device did not finish its work (%u of %u rays traced, %u of %u hits "
-                       "scattered, %u of %u lit); its driver is faulty, try --device cpu",
-                       c->traced, traced, c->scattered, c->hits, c->shaded,
-                       lit * light_dispatches(w));
+                       "the device did not finish its work (%u of %u camera rays made, %u of %u "
+                       "rays traced, %u of %u hits shaded); its driver is faulty, try "
+                       "--device cpu",
+                       c->made, made, c->traced, rays, c->shaded, shaded);
     lr_render_stats *s = w->stats;
     if (generation == 0) {
-        s->primary.traced += traced;
+        s->primary.traced += rays;
         s->primary.hit += c->hits;
     }
     s->reflected.traced += c->reflected;
@@ -275,10 +290,9 @@ static lr_status take_counts(lr_wavefront *w, uint32_t traced, uint32_t generati
     return LR_OK;
 }
 
-/* One pass: trace, scatter, light. */
-static lr_status run_pass(lr_wavefront *w, VkPipeline trace, uint32_t generation,
-                          struct gpu_work *work, const uint32_t groups[3], uint32_t rays,
-                          lr_error *error)
+/* One pass: in generation 0 make camera rays; trace `rays` rays from work->first; shade. */
+static lr_status run_pass(lr_wavefront *w, uint32_t generation, struct gpu_work *work,
+                          const uint32_t camera_groups[3], uint32_t rays, lr_error *error)
 {
     lr_status status = open_generation(w, generation, error);
     if (!status)
@@ -286,15 +300,17 @@ static lr_status run_pass(lr_wavefront *w, VkPipeline trace, uint32_t generation
     if (status)
         return status;
     VkDescriptorSet set = w->queues[generation].set;
+    work->count = rays;
     reset_counters(w);
     lr_commands_barrier(w->device);
-    lr_commands_dispatch(w->device, &w->layout, trace, set, work, groups[0], groups[1], groups[2]);
-    if (w->scatter) {
+    if (camera_groups) {
+        lr_commands_dispatch(w->device, &w->layout, w->camera, w->camera_set, work,
+                             camera_groups[0], camera_groups[1], camera_groups[2]);
         lr_commands_barrier(w->device);
-        lr_commands_dispatch_indirect(w->device, &w->layout, w->scatter, set, work, &w->counters,
-                                      offsetof(struct gpu_counters, hit_groups));
     }
-    record_light(w, work, set);
+    lr_commands_dispatch(w->device, &w->layout, w->trace, set, work,
+                         groups_for(rays, LR_GROUP_SIZE), 1, 1);
+    record_shade(w, work, set);
     lr_commands_barrier(w->device);
     lr_commands_copy(w->device, &w->counters, &w->counters_host, sizeof(struct gpu_counters));
     double start = lr_now();
@@ -322,9 +338,8 @@ static lr_status drain_queues(lr_wavefront *w, lr_pass_done done, void *user, do
             return lr_fail(error, LR_ERROR_DEVICE, "the ray tree did not end");
         uint32_t rays = at_most(queue->count, w->chunk_rays);
         queue->count -= rays;
-        struct gpu_work work = {.count = rays, .first = queue->count};
-        uint32_t groups[3] = {groups_for(rays, LR_GROUP_SIZE), 1, 1};
-        lr_status status = run_pass(w, w->trace, generation, &work, groups, rays, error);
+        struct gpu_work work = {.first = queue->count};
+        lr_status status = run_pass(w, generation, &work, NULL, rays, error);
         if (status)
             return status;
         if (!done(user, fraction))
@@ -376,7 +391,7 @@ lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_p
         uint32_t groups[3] = {groups_for(tile->width, LR_TILE_GROUP),
                               groups_for(tile->height, LR_TILE_GROUP), count};
         double fraction = (double)(sample + count) / samples;
-        status = run_pass(w, w->primary, 0, &work, groups, pixels * count, error);
+        status = run_pass(w, 0, &work, groups, pixels * count, error);
         if (!status && !done(user, fraction))
             status = lr_fail(error, LR_ERROR_INTERRUPTED, "interrupted");
         if (!status)

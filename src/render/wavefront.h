@@ -21,10 +21,10 @@ typedef struct lr_wavefront {
     lr_device *device;
     const lr_packed_scene *scene;
     lr_layout layout;
-    VkPipeline primary, trace, scatter, light;
-    lr_buffer frame, rows, film, film_host, counters, counters_host, hits, lit, none;
-    lr_queue
-        queues[LR_GENERATIONS_MAX]; /* queues[0] stays empty: camera rays are made on the fly */
+    VkPipeline camera, trace, shade;
+    lr_buffer frame, rows, film, film_host, counters, counters_host, hits, none;
+    VkDescriptorSet camera_set; /* makes camera rays into queues[0] */
+    lr_queue queues[LR_GENERATIONS_MAX];
     uint32_t tile_size, chunk_rays, lights_at_once;
     lr_render_stats *stats;
 } lr_wavefront;

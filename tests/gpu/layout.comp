@@ -6,6 +6,7 @@
 // test_layout.c compares them with what it uploaded, and the offsets in this module with C's.
 #include "gpu_layout.h"
 #include "bindings.glsl"
+#include "queue.glsl"
 #include "scene_data.glsl"
 
 layout(local_size_x = 1) in;
@@ -21,6 +22,8 @@ layout(std430, set = 0, binding = LR_BIND_COUNT) readonly buffer RecordBlock
     gpu_medium some_medium[2];
     gpu_material some_material[2];
     gpu_light some_light[2];
+    gpu_ray some_ray[2];
+    gpu_hit some_hit[2];
     gpu_self_test_in some_self_test_in[2];
     gpu_self_test_out some_self_test_out[2];
 };
@@ -48,10 +51,10 @@ void put_vec4(vec4 v)
 
 void put_list(gpu_list x)
 {
-    put(x.first);
-    put(x.count);
-    put(x.opaque);
-    put(x.casters);
+    put(x.base);
+    put(x.begin);
+    put(x.end);
+    put(x.unused);
 }
 
 void put_sphere(gpu_sphere x)
@@ -76,8 +79,8 @@ void put_flat(gpu_flat x)
 void put_solid(gpu_solid x)
 {
     put_vec4(x.row0); put_vec4(x.row1); put_vec4(x.row2); put(floatBitsToUint(x.scale));
-    put(floatBitsToUint(x.inv_scale)); put(floatBitsToUint(x.radius_from));
-    put(floatBitsToUint(x.radius_slope)); put(x.object); put(x.flags); put(x.unused0);
+    put(floatBitsToUint(x.inv_scale)); put(x.object); put(x.flags);
+    put(floatBitsToUint(x.radius_from)); put(floatBitsToUint(x.radius_slope)); put(x.unused0);
     put(x.unused1);
 }
 
@@ -110,9 +113,7 @@ void put_ray(gpu_ray x)
 
 void put_hit(gpu_hit x)
 {
-    put_vec3(x.position); put(x.pixel); put_vec3(x.normal); put(x.object); put_vec3(x.direction);
-    put(x.state); put_vec3(x.weight); put(floatBitsToUint(x.offset)); put(x.media0); put(x.media1);
-    put(x.media2); put(x.media3);
+    put(x.ray); put(floatBitsToUint(x.t)); put(x.primitive); put(x.unused);
 }
 
 void put_object(uint index)
@@ -122,7 +123,8 @@ void put_object(uint index)
     put_vec4(row0);
     put_vec4(row1);
     put_vec4(row2);
-    uvec3 ids = load_object_ids(index), shadow = load_object_shadow(index);
+    uvec3 ids = load_object_ids(index);
+    uvec4 shadow = load_object_shadow(index);
     put(ids.x);
     put(ids.y);
     put(ids.z);
@@ -130,44 +132,41 @@ void put_object(uint index)
     put(shadow.x);
     put(shadow.y);
     put(shadow.z);
-    put(0u);
+    put(shadow.w);
 }
 
 void main()
 {
     uint i = work.first;
     put_sphere(load_sphere(i));
-    put_solid(load_solid(frame.ellipsoids.first, i));
+    put_solid(load_solid(i));
     put_plane(load_plane(i));
     put_flat(load_flat(i));
-    put_solid(load_solid(frame.boxes.first, i));
-    put_solid(load_solid(frame.cones.first, i));
     put_object(i);
     put_material(load_material(i));
     put_medium(load_medium(i));
     put_light(load_light(i));
-    put_ray(rays_in[i]);
-    put_hit(hits[i]);
+    put_ray(load_ray(i));
+    put_hit(load_hit(i));
     put_vec3(frame.origin); put(floatBitsToUint(frame.half_width)); put_vec3(frame.forward);
     put(floatBitsToUint(frame.half_height)); put_vec3(frame.pixel_right);
     put(floatBitsToUint(frame.inv_samples)); put_vec3(frame.pixel_down); put(frame.samples);
     put_vec3(frame.background_low); put(frame.seed); put_vec3(frame.background_high);
     put(frame.depth); put_vec3(frame.background_up); put(floatBitsToUint(frame.min_weight));
     put_vec3(frame.fog_color); put(floatBitsToUint(frame.fog_density)); put_list(frame.spheres);
-    put_list(frame.ellipsoids); put_list(frame.planes); put_list(frame.flats);
-    put_list(frame.boxes); put_list(frame.cones); put(frame.objects); put(frame.materials);
+    put_list(frame.flats); put_list(frame.solids); put_list(frame.ellipsoids);
+    put_list(frame.boxes); put_list(frame.cones); put_list(frame.planes); put(frame.objects); put(frame.materials);
     put(frame.media); put(frame.lights); put(frame.inside0); put(frame.inside1);
-    put(frame.inside2); put(frame.inside3);
+    put(frame.inside2); put(frame.inside3); put(frame.balls); put(frame.bounded);
+    put(frame.unused0); put(frame.unused1);
     put(work.tile_x); put(work.tile_y); put(work.tile_width); put(work.tile_height);
     put(work.first_sample); put(work.count); put(work.first); put(work.light);
-    put(work.light_count); put(work.add_ambient);
+    put(work.light_count); put(work.first_lights);
     put(counters.hit_groups); put(counters.hit_groups_y); put(counters.hit_groups_z);
-    put(counters.unused0); put(counters.lit_groups); put(counters.lit_groups_y);
-    put(counters.lit_groups_z); put(counters.unused1); put(counters.hits); put(counters.lit);
-    put(counters.rays); put(counters.traced); put(counters.scattered); put(counters.shaded);
+    put(counters.hits); put(counters.rays); put(counters.traced); put(counters.shaded);
     put(counters.reflected); put(counters.refracted); put(counters.passed);
     put(counters.reflected_hits); put(counters.refracted_hits); put(counters.shadow);
     put(counters.shadow_hits); put(counters.dropped_depth); put(counters.dropped_weight);
     put(counters.dropped_nesting); put(counters.non_finite); put(counters.saturated);
-    put(counters.unused2); put(counters.unused3);
+    put(counters.made);
 }

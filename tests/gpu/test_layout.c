@@ -3,8 +3,7 @@
 #include "gpu_tests.h"
 
 #include "layout.spv.h"
-#include "light.spv.h"
-#include "scatter.spv.h"
+#include "shade.spv.h"
 #include "self_test.spv.h"
 #include "trace.spv.h"
 
@@ -67,7 +66,7 @@ static const member members[] = {
     WORD(gpu_object, shadow_red),
     WORD(gpu_object, shadow_green),
     WORD(gpu_object, shadow_blue),
-    WORD(gpu_object, unused1),
+    WORD(gpu_object, shadow_rank),
     FLOATS(gpu_medium, absorption),
     FLOATS(gpu_medium, ior),
     FLOATS(gpu_material, color0),
@@ -98,10 +97,10 @@ static const member members[] = {
     WORD(gpu_light, unused0),
     WORD(gpu_light, unused1),
     WORD(gpu_light, unused2),
-    WORD(gpu_list, first),
-    WORD(gpu_list, count),
-    WORD(gpu_list, opaque),
-    WORD(gpu_list, casters),
+    WORD(gpu_list, base),
+    WORD(gpu_list, begin),
+    WORD(gpu_list, end),
+    WORD(gpu_list, unused),
     FLOATS(gpu_frame, origin),
     FLOATS(gpu_frame, half_width),
     FLOATS(gpu_frame, forward),
@@ -119,11 +118,12 @@ static const member members[] = {
     FLOATS(gpu_frame, fog_color),
     FLOATS(gpu_frame, fog_density),
     LIST(gpu_frame, spheres),
-    LIST(gpu_frame, ellipsoids),
-    LIST(gpu_frame, planes),
     LIST(gpu_frame, flats),
+    LIST(gpu_frame, solids),
+    LIST(gpu_frame, ellipsoids),
     LIST(gpu_frame, boxes),
     LIST(gpu_frame, cones),
+    LIST(gpu_frame, planes),
     WORD(gpu_frame, objects),
     WORD(gpu_frame, materials),
     WORD(gpu_frame, media),
@@ -132,6 +132,10 @@ static const member members[] = {
     WORD(gpu_frame, inside1),
     WORD(gpu_frame, inside2),
     WORD(gpu_frame, inside3),
+    WORD(gpu_frame, balls),
+    WORD(gpu_frame, bounded),
+    WORD(gpu_frame, unused0),
+    WORD(gpu_frame, unused1),
     WORD(gpu_work, tile_x),
     WORD(gpu_work, tile_y),
     WORD(gpu_work, tile_width),
@@ -141,7 +145,7 @@ static const member members[] = {
     WORD(gpu_work, first),
     WORD(gpu_work, light),
     WORD(gpu_work, light_count),
-    WORD(gpu_work, add_ambient),
+    WORD(gpu_work, first_lights),
     FLOATS(gpu_ray, origin),
     WORD(gpu_ray, pixel),
     FLOATS(gpu_ray, direction),
@@ -152,31 +156,16 @@ static const member members[] = {
     WORD(gpu_ray, media1),
     WORD(gpu_ray, media2),
     WORD(gpu_ray, media3),
-    FLOATS(gpu_hit, position),
-    WORD(gpu_hit, pixel),
-    FLOATS(gpu_hit, normal),
-    WORD(gpu_hit, object),
-    FLOATS(gpu_hit, direction),
-    WORD(gpu_hit, state),
-    FLOATS(gpu_hit, weight),
-    FLOATS(gpu_hit, offset),
-    WORD(gpu_hit, media0),
-    WORD(gpu_hit, media1),
-    WORD(gpu_hit, media2),
-    WORD(gpu_hit, media3),
+    WORD(gpu_hit, ray),
+    FLOATS(gpu_hit, t),
+    WORD(gpu_hit, primitive),
+    WORD(gpu_hit, unused),
     WORD(gpu_counters, hit_groups),
     WORD(gpu_counters, hit_groups_y),
     WORD(gpu_counters, hit_groups_z),
-    WORD(gpu_counters, unused0),
-    WORD(gpu_counters, lit_groups),
-    WORD(gpu_counters, lit_groups_y),
-    WORD(gpu_counters, lit_groups_z),
-    WORD(gpu_counters, unused1),
     WORD(gpu_counters, hits),
-    WORD(gpu_counters, lit),
     WORD(gpu_counters, rays),
     WORD(gpu_counters, traced),
-    WORD(gpu_counters, scattered),
     WORD(gpu_counters, shaded),
     WORD(gpu_counters, reflected),
     WORD(gpu_counters, refracted),
@@ -190,8 +179,7 @@ static const member members[] = {
     WORD(gpu_counters, dropped_nesting),
     WORD(gpu_counters, non_finite),
     WORD(gpu_counters, saturated),
-    WORD(gpu_counters, unused2),
-    WORD(gpu_counters, unused3),
+    WORD(gpu_counters, made),
     FLOATS(gpu_self_test_in, a),
     FLOATS(gpu_self_test_in, b),
     FLOATS(gpu_self_test_in, c),
@@ -330,8 +318,7 @@ static void test_offsets(void **state)
     (void)state;
     bool seen[MEMBER_COUNT] = {false};
     check_module(trace_spv, sizeof trace_spv / 4, seen);
-    check_module(scatter_spv, sizeof scatter_spv / 4, seen);
-    check_module(light_spv, sizeof light_spv / 4, seen);
+    check_module(shade_spv, sizeof shade_spv / 4, seen);
     check_module(self_test_spv, sizeof self_test_spv / 4, seen);
     check_module(layout_spv, sizeof layout_spv / 4, seen);
     for (size_t i = 0; i < MEMBER_COUNT; i++)
@@ -344,9 +331,9 @@ static void test_offsets(void **state)
 #define RECORDS 3 /* of each kind; the last is loaded */
 
 /* The rows in the order of a packed scene, and what layout.comp makes of them. */
-static const char *const kinds[] = {"gpu_sphere", "gpu_solid", "gpu_plane",  "gpu_flat",
-                                    "gpu_solid",  "gpu_solid", "gpu_object", "gpu_material",
-                                    "gpu_medium", "gpu_light", "gpu_ray",    "gpu_hit"};
+static const char *const kinds[] = {"gpu_sphere", "gpu_solid",    "gpu_plane",  "gpu_flat",
+                                    "gpu_object", "gpu_material", "gpu_medium", "gpu_light",
+                                    "gpu_ray",    "gpu_hit"};
 enum { KIND_COUNT = sizeof kinds / sizeof *kinds, ROW_KINDS = KIND_COUNT - 2 };
 
 /* Floats that are no subnormals, and integers that would be: small ones. */
@@ -399,10 +386,9 @@ static void fill_upload(upload *u, uint32_t seed)
     struct gpu_frame frame;
     fill_record(&seed, "gpu_frame", u->frame);
     memcpy(&frame, u->frame, sizeof frame);
-    uint32_t *firsts[] = {&frame.spheres.first, &frame.ellipsoids.first, &frame.planes.first,
-                          &frame.flats.first,   &frame.boxes.first,      &frame.cones.first,
-                          &frame.objects,       &frame.materials,        &frame.media,
-                          &frame.lights};
+    uint32_t *firsts[] = {&frame.spheres.base, &frame.solids.base, &frame.planes.base,
+                          &frame.flats.base,   &frame.objects,     &frame.materials,
+                          &frame.media,        &frame.lights};
     for (uint32_t i = 0; i < ROW_KINDS; i++)
         *firsts[i] = first[i];
     memcpy(u->frame, &frame, sizeof frame);
@@ -420,8 +406,12 @@ static void load_back(lr_device *device, const upload *u, bool texel_loads, uint
 {
     VkDescriptorType types[LR_BIND_COUNT];
     lr_buffer_kind buffer_kinds[LR_BIND_COUNT];
-    const void *contents[LR_BIND_COUNT] = {u->frame,    u->rows, NULL, NULL,
-                                           u->counters, u->rays, NULL, u->hits};
+    const void *contents[LR_BIND_COUNT] = {
+        [LR_BIND_FRAME] = u->frame,       [LR_BIND_SCENE_TEXEL] = u->rows,
+        [LR_BIND_COUNTERS] = u->counters, [LR_BIND_RAYS_IN] = u->rays,
+        [LR_BIND_HITS] = u->hits,         [LR_BIND_RAYS_TEXEL] = u->rays,
+        [LR_BIND_HITS_TEXEL] = u->hits,
+    };
     lr_buffer own[LR_BIND_COUNT], back;
     const lr_buffer *buffers[LR_BIND_COUNT];
     for (int i = 0; i < LR_BIND_COUNT; i++) {
@@ -429,9 +419,12 @@ static void load_back(lr_device *device, const upload *u, bool texel_loads, uint
         buffer_kinds[i] = LR_BUFFER_STORAGE;
     }
     types[LR_BIND_FRAME] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-    types[LR_BIND_SCENE_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
     buffer_kinds[LR_BIND_FRAME] = LR_BUFFER_UNIFORM;
-    buffer_kinds[LR_BIND_SCENE_TEXEL] = LR_BUFFER_TEXEL;
+    const int texel_bindings[] = {LR_BIND_SCENE_TEXEL, LR_BIND_RAYS_TEXEL, LR_BIND_HITS_TEXEL};
+    for (int i = 0; i < 3; i++) {
+        types[texel_bindings[i]] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+        buffer_kinds[texel_bindings[i]] = LR_BUFFER_TEXEL;
+    }
     for (int i = 0; i < LR_BIND_COUNT; i++) {
         size_t size = i == LR_BIND_SCENE_TEXEL ? sizeof u->rows : sizeof u->frame;
         size_t room = i == LR_BIND_FILM ? sizeof u->expected : size;
@@ -442,7 +435,9 @@ static void load_back(lr_device *device, const upload *u, bool texel_loads, uint
     }
     MUST(lr_buffer_create(device, LR_BUFFER_HOST, sizeof u->expected, "back", &back, error));
 
-    uint32_t constants[LR_SPEC_COUNT] = {[LR_SPEC_TEXEL_LOADS] = texel_loads};
+    uint32_t constants[LR_SPEC_COUNT] = {0};
+    constants[LR_SPEC_TEXEL_LOADS] = constants[LR_SPEC_TEXEL_QUEUES] = texel_loads;
+    constants[LR_SPEC_CONES] = constants[LR_SPEC_MEDIA] = 1;
     lr_layout_desc layout_desc = {types, LR_BIND_COUNT, sizeof(struct gpu_work), 1};
     lr_program_desc program_desc = {layout_spv, sizeof layout_spv / 4, constants, LR_SPEC_COUNT};
     lr_layout layout;

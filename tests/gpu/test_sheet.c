@@ -376,9 +376,10 @@ static void test_plane_is_packed_with_a_unit_normal(void **state)
     MUST(lr_scene_parse(text, strlen(text), "test.yaml", &scene, &report, error));
     settings.camera = &scene->cameras[0];
     MUST(lr_pack_scene(scene, &settings, &packed, error));
-    assert_int_equal(packed.frame.planes.count, 1);
+    assert_int_equal(packed.frame.planes.end - packed.frame.planes.begin, 1);
     struct gpu_plane plane;
-    memcpy(&plane, &packed.rows[packed.frame.planes.first], sizeof plane);
+    memcpy(&plane, &packed.rows[packed.frame.planes.base + 2 * packed.frame.planes.begin],
+           sizeof plane);
     assert_near(plane.normal.x, 0, 0);
     assert_near(plane.normal.y, 0.6, 1e-7);
     assert_near(plane.normal.z, 0.8, 1e-7);

@@ -3,8 +3,8 @@
 #include "unit/spirv_compile.h"
 
 #include "gpu_layout.h"
-#include "light.spv.h"
-#include "scatter.spv.h"
+#include "camera.spv.h"
+#include "shade.spv.h"
 #include "trace.spv.h"
 
 enum {
@@ -27,8 +27,8 @@ static const struct {
     size_t count;
 } kernels[] = {
     {"trace", trace_spv, sizeof trace_spv / 4},
-    {"scatter", scatter_spv, sizeof scatter_spv / 4},
-    {"light", light_spv, sizeof light_spv / 4},
+    {"shade", shade_spv, sizeof shade_spv / 4},
+    {"camera", camera_spv, sizeof camera_spv / 4},
 };
 enum { KERNEL_COUNT = sizeof kernels / sizeof *kernels };
 
@@ -157,10 +157,10 @@ static void test_what_is_ruled_out_is_gone(void **state)
         {LR_SPEC_SPHERES, 0, "intersect_sphere("}, {LR_SPEC_ELLIPSOIDS, 0, "intersect_ellipsoid("},
         {LR_SPEC_PLANES, 0, "intersect_plane("},   {LR_SPEC_FLATS, 0, "intersect_flat("},
         {LR_SPEC_BOXES, 0, "intersect_box("},      {LR_SPEC_CONES, 0, "intersect_cone("},
-        {LR_SPEC_BOXES, 2, "intersect_box("},      {LR_SPEC_SPHERES, 2, "intersect_sphere("},
+        {LR_SPEC_BOXES, 1, "intersect_box("},      {LR_SPEC_SPHERES, 1, "intersect_sphere("},
         {LR_SPEC_MEDIA, 1, "media_with("},         {LR_SPEC_FRESNEL, 1, "fresnel_reflectance("},
-        {LR_SPEC_SPECULAR, 2, "ex_pow("},          {LR_SPEC_PATTERNS, 2, "pattern_color("},
-        {LR_SPEC_TRANSPARENT, 2, "tint("},         {LR_SPEC_PRIMARY, 0, "make_camera_ray("},
+        {LR_SPEC_SPECULAR, 1, "ex_pow("},          {LR_SPEC_PATTERNS, 1, "pattern_color("},
+        {LR_SPEC_TRANSPARENT, 1, "tint("},         {LR_SPEC_SCATTER, 1, "scatter("},
     };
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         for (uint32_t present = 0; present < 2; present++) {
@@ -180,7 +180,7 @@ static void test_defaults(void **state)
     (void)state;
     uint32_t defaults[LR_SPEC_COUNT];
     for (int i = 0; i < LR_SPEC_COUNT; i++)
-        defaults[i] = i != LR_SPEC_PRIMARY;
+        defaults[i] = 1;
     lr_spirv given = specialize(0, defaults), left;
     assert_int_equal(lr_spirv_specialize(trace_spv, sizeof trace_spv / 4, NULL, 0, &left, NULL),
                      LR_OK);
@@ -200,9 +200,9 @@ static void test_truncated(void **state)
     for (size_t count = 0; count < 2000; count++) {
         bool whole = count == next;
         if (whole)
-            next += scatter_spv[next] >> 16;
+            next += shade_spv[next] >> 16;
         uint32_t *words = malloc(count ? 4 * count : 1);
-        memcpy(words, scatter_spv, 4 * count);
+        memcpy(words, shade_spv, 4 * count);
         lr_spirv module;
         lr_error error = {0};
         lr_status status =

@@ -1,17 +1,14 @@
-#version 450
-#extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_shuffle : require
-// The children of each hit: the reflected and the refracted ray, and the list of the hits that light
-// falls on. Runs only in scenes where something reflects or transmits.
-#include "gpu_layout.h"
-#include "bindings.glsl"
+// The children of a hit: the reflected and the refracted ray.
+#ifndef SCATTER_GLSL
+#define SCATTER_GLSL
+
+#include "batch.glsl"
 #include "exact.glsl"
 #include "fresnel.glsl"
 #include "media.glsl"
+#include "queue.glsl"
 #include "scene_data.glsl"
-
-layout(local_size_x = LR_GROUP_SIZE) in;
+#include "surface.glsl"
 
 struct child {
     vec3 weight;
@@ -43,29 +40,22 @@ bool admit(child c, uint depth)
     return true;
 }
 
-void emit(child c, gpu_hit hit, vec3 n)
+void emit(uint slot, child c, uint pixel, surface s, vec3 n)
 {
-    uint slot = atomicAdd(counters.rays, 1u);
-    rays_out[slot] = gpu_ray(hit.position + n * (c.side * hit.offset), hit.pixel,
-                             ex_normalize(c.direction), c.state, c.weight, 0u, c.media.x,
-                             c.media.y, c.media.z, c.media.w);
+    store_ray(slot, gpu_ray(s.position + n * (c.side * s.offset), pixel, ex_normalize(c.direction),
+                            c.state, c.weight, 0u, c.media.x, c.media.y, c.media.z, c.media.w));
 }
 
-void main()
+// Emits the children of `ray`, which met `s` with `weight`; n is the normal against the ray. Returns
+// false when the surface is hidden within another medium, and so nothing to be lit.
+bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, uvec3 ids, gpu_material m, bool wanted)
 {
-    uint index = queue_index();
-    if (index >= counters.hits)
-        return;
-    gpu_hit hit = hits[index];
-    uvec3 ids = load_object_ids(hit.object);
-    gpu_material m = load_material(ids.x);
-    bool entering = ex_dot(hit.direction, hit.normal) < 0.0;
-    vec3 n = entering ? hit.normal : -hit.normal;
-    float c1 = min(max(-ex_dot(hit.direction, n), 0.0), 1.0);
-    uvec4 media = uvec4(hit.media0, hit.media1, hit.media2, hit.media3);
+    bool entering = ex_dot(ray.direction, s.normal) < 0.0;
+    float c1 = min(max(-ex_dot(ray.direction, n), 0.0), 1.0);
+    uvec4 media = uvec4(ray.media0, ray.media1, ray.media2, ray.media3);
     uvec4 beyond = media;
     bool solid = has_media && (ids.y & LR_FLAG_SOLID) != 0u && (ids.y & LR_FLAG_TRANSPARENT) != 0u;
-    uint depth = hit.state & LR_STATE_DEPTH;
+    uint depth = ray.state & LR_STATE_DEPTH;
 
     bool hidden = false;
     float ior1 = 1.0, ior2 = m.ior, gamma = 1.0;
@@ -76,7 +66,7 @@ void main()
             beyond = media_with(media, ids.z, placed);
         if (solid && !entering)
             beyond = media_without(media, ids.z);
-        if (!placed)
+        if (wanted && !placed)
             atomicAdd(counters.dropped_nesting, 1u);
         uint after = media_top(beyond);
         hidden = solid && before == after;
@@ -87,8 +77,8 @@ void main()
         }
     }
 
-    vec3 reflect_weight = hit.weight * m.reflect;
-    vec3 transmit_weight = hit.weight * m.transmit;
+    vec3 reflect_weight = weight * m.reflect;
+    vec3 transmit_weight = weight * m.transmit;
     float c2_squared = refracted_cosine_squared(c1, gamma);
     float c2 = ex_sqrt(c2_squared);
     bool total = solid && c2_squared <= 0.0;
@@ -103,22 +93,22 @@ void main()
     } else if (total) {
         reflect_weight = reflect_weight + transmit_weight;
     }
-    vec3 refracted = solid ? refract_direction(hit.direction, n, c1, c2, gamma) : hit.direction;
+    vec3 refracted = solid ? refract_direction(ray.direction, n, c1, c2, gamma) : ray.direction;
 
-    uint passes = hit.state >> LR_STATE_PASSES_SHIFT;
-    uint next = (hit.state & ~(LR_STATE_DEPTH | LR_STATE_KIND)) | (depth + 1u);
-    child mirrored = child(reflect_weight, reflect_direction(hit.direction, n), 1.0, media,
+    uint passes = ray.state >> LR_STATE_PASSES_SHIFT;
+    uint next = (ray.state & ~(LR_STATE_DEPTH | LR_STATE_KIND)) | (depth + 1u);
+    child mirrored = child(reflect_weight, reflect_direction(ray.direction, n), 1.0, media,
                            next | (LR_KIND_REFLECTED << LR_STATE_KIND_SHIFT));
     child through = child(transmit_weight, refracted, -1.0, beyond,
                           next | (LR_KIND_REFRACTED << LR_STATE_KIND_SHIFT));
-    bool emit_mirrored = !hidden && admit(mirrored, depth);
-    bool emit_through = !hidden && !total && admit(through, depth);
-    if (hidden) {
+    bool emit_mirrored = wanted && !hidden && admit(mirrored, depth);
+    bool emit_through = wanted && !hidden && !total && admit(through, depth);
+    if (wanted && hidden) {
         // The surface lies inside a medium that fills the space on both sides: as if it were not
         // there. The ray goes on as the same ray.
-        uint kind = (hit.state & LR_STATE_KIND) >> LR_STATE_KIND_SHIFT;
+        uint kind = (ray.state & LR_STATE_KIND) >> LR_STATE_KIND_SHIFT;
         uint on_kind = kind == LR_KIND_PRIMARY ? LR_KIND_REFRACTED : kind;
-        through = child(hit.weight, hit.direction, -1.0, beyond,
+        through = child(weight, ray.direction, -1.0, beyond,
                         depth | (on_kind << LR_STATE_KIND_SHIFT) |
                             ((passes + 1u) << LR_STATE_PASSES_SHIFT));
         emit_through = passes < uint(LR_PASSES_MAX);
@@ -128,20 +118,16 @@ void main()
             atomicAdd(counters.dropped_nesting, 1u);
     }
 
-    if (emit_mirrored) {
-        emit(mirrored, hit, n);
-        atomicAdd(counters.reflected, 1u);
-    }
-    if (emit_through) {
-        emit(through, hit, n);
-        if (!hidden)
-            atomicAdd(counters.refracted, 1u);
-    }
-    if (!hidden && (m.flags & LR_GPU_LIT) != 0u) {
-        uint slot = atomicAdd(counters.lit, 1u);
-        if ((slot & (uint(LR_GROUP_SIZE) - 1u)) == 0u)
-            atomicAdd(counters.lit_groups, 1u);
-        lit[slot] = index;
-    }
-    atomicAdd(counters.scattered, 1u);
+    uint slot;
+    TAKE_SLOT(counters.rays, emit_mirrored, slot)
+    if (emit_mirrored)
+        emit(slot, mirrored, ray.pixel, s, n);
+    TAKE_SLOT(counters.rays, emit_through, slot)
+    if (emit_through)
+        emit(slot, through, ray.pixel, s, n);
+    COUNT(counters.reflected, uint(emit_mirrored))
+    COUNT(counters.refracted, uint(emit_through && !hidden))
+    return !hidden;
 }
+
+#endif

@@ -1,0 +1,27 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+// Makes the camera rays of a tile, one sample a workgroup layer, into the first queue.
+#include "gpu_layout.h"
+#include "bindings.glsl"
+#include "camera.glsl"
+#include "queue.glsl"
+
+layout(local_size_x = LR_TILE_GROUP, local_size_y = LR_TILE_GROUP) in;
+
+void main()
+{
+    uint y_group = spread_group(gl_WorkGroupID.y, gl_NumWorkGroups.y);
+    uvec2 at = uvec2(gl_GlobalInvocationID.x, y_group * uint(LR_TILE_GROUP) + gl_LocalInvocationID.y);
+    if (at.x >= work.tile_width || at.y >= work.tile_height)
+        return;
+    uvec2 pixel = uvec2(work.tile_x, work.tile_y) + at;
+    vec2 position = vec2(pixel) + sample_position(pixel, work.first_sample + gl_WorkGroupID.z);
+    uint in_tile = at.y * work.tile_width + at.x;
+    uint slot = atomicAdd(counters.made, 1u);
+    store_ray(slot, gpu_ray(frame.origin, in_tile, camera_direction(position),
+                            LR_KIND_PRIMARY << LR_STATE_KIND_SHIFT, vec3(1.0), 0u, frame.inside0,
+                            frame.inside1, frame.inside2, frame.inside3));
+    atomicAdd(film[in_tile * uint(LR_FILM_WORDS) + uint(LR_FILM_SAMPLES)], 1u);
+}

@@ -1,0 +1,125 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+// What happens at each hit: the reflected and the refracted ray go into the next queue, the light
+// that falls there into the film.
+#include "gpu_layout.h"
+#include "bindings.glsl"
+#include "air.glsl"
+#include "classic.glsl"
+#include "film.glsl"
+#include "light.glsl"
+#include "pattern.glsl"
+#include "queue.glsl"
+#include "scatter.glsl"
+#include "shadow.glsl"
+#include "surface.glsl"
+
+layout(local_size_x = LR_GROUP_SIZE) in;
+
+// What is left of each channel behind ray l's obstacles.
+vec3 left_by(shadow_rays rays, uint l)
+{
+    uvec3 depth = uvec3(pick(rays.red, l), pick(rays.green, l), pick(rays.blue, l));
+    bvec3 dark = equal(depth, uvec3(LR_SHADOW_OPAQUE));
+    vec3 left = vec3(1.0);
+    if (has_transparent) {
+        vec3 bits = vec3(depth) * LR_SHADOW_BITS;
+        left = vec3(ex_exp2(bits.x), ex_exp2(bits.y), ex_exp2(bits.z));
+    }
+    return vec3(dark.x ? 0.0 : left.x, dark.y ? 0.0 : left.y, dark.z ? 0.0 : left.z);
+}
+
+// Adds the light of up to four sources from number `first`.
+void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m, surface s, vec3 n,
+                vec3 wo, bool lit, inout film_sum sum)
+{
+    vec3 origin = s.position + n * s.offset;
+    shadow_rays rays;
+    vec4 red = vec4(0.0), green = vec4(0.0), blue = vec4(0.0);
+    rays.x = rays.y = rays.z = rays.t_max = vec4(0.0);
+    uvec4 wanted = uvec4(0u);
+    uint ray_count = 0u;
+    gpu_light held;
+    if (has_shuffle)
+        held = load_light(first + min(batch_lane(), count - 1u));
+    for (uint l = 0u;;) {
+        gpu_light light;
+        if (has_shuffle)
+            light = share(held, l);
+        else
+            light = load_light(first + l);
+        arriving_light arriving = sample_light(light, s.position);
+        vec3 value = weight * (arriving.color * classic_light(m, color, n, wo, arriving.wi));
+        bool reaches = lit && (value.x > 0.0 || value.y > 0.0 || value.z > 0.0);
+        red = replaced(red, l, reaches ? value.x : 0.0);
+        green = replaced(green, l, reaches ? value.y : 0.0);
+        blue = replaced(blue, l, reaches ? value.z : 0.0);
+        vec4 ray = shadow_ray(light, origin);
+        rays.x = replaced(rays.x, l, ray.x);
+        rays.y = replaced(rays.y, l, ray.y);
+        rays.z = replaced(rays.z, l, ray.z);
+        rays.t_max = replaced(rays.t_max, l, ray.w);
+        bool shadowed = reaches && (light.flags & LR_GPU_LIGHT_SHADOWS) != 0u;
+        wanted = replaced(wanted, l, shadowed ? 1u : 0u);
+        ray_count += shadowed ? 1u : 0u;
+        l++;
+        if (l >= count)
+            break;
+    }
+    rays.wanted = equal(wanted, uvec4(1u));
+    trace_shadows(rays, origin, count);
+    uvec4 met = rays.red | rays.green | rays.blue;
+    uint hit_count = uint(met.x != 0u) + uint(met.y != 0u) + uint(met.z != 0u) + uint(met.w != 0u);
+    COUNT(counters.shadow, ray_count)
+    COUNT(counters.shadow_hits, hit_count)
+    for (uint l = 0u;;) {
+        vec3 value = vec3(pick(red, l), pick(green, l), pick(blue, l));
+        film_accumulate(sum, value * left_by(rays, l));
+        l++;
+        if (l >= count)
+            break;
+    }
+}
+
+void main()
+{
+    uint index = queue_index();
+    bool wanted = index < counters.hits;
+    gpu_hit hit = load_hit(wanted ? index : 0u);
+    gpu_ray ray = load_ray(hit.ray);
+    surface s = surface_at(hit.primitive, hit.t, ray.origin, ray.direction);
+    uvec3 ids = load_object_ids(s.object);
+    gpu_material m = load_material(ids.x);
+    vec3 color = m.color0;
+    if (has_patterns)
+        color = pattern_color(m, s.object, s.position, s.normal);
+    vec3 n = ex_dot(ray.direction, s.normal) < 0.0 ? s.normal : -s.normal;
+
+    vec3 fog;
+    vec3 weight = weight_after(ray, hit.t, fog);
+    bool first_lights = wanted && hidden(work.first_lights) != 0u;
+    bool lit = wanted && (m.flags & LR_GPU_LIT) != 0u;
+    if (has_scatter) {
+        bool visible = scatter(ray, weight, s, n, ids, m, first_lights);
+        lit = lit && visible;
+    }
+    film_sum sum = film_zero();
+    if (has_fog && first_lights)
+        film_accumulate(sum, fog);
+    if (lit && first_lights)
+        film_accumulate(sum, weight * (m.ambient * color));
+    uint count = hidden(work.light_count);
+    lit = lit && count != 0u;
+    for (uint l = 0u;;) {
+        uint some = max(min(count - l, 4u), 1u);
+        add_lights(work.light + l, some, weight, color, m, s, n, -ray.direction, lit, sum);
+        l += 4u;
+        if (l >= count)
+            break;
+    }
+    if (wanted)
+        film_add(ray.pixel, sum);
+    COUNT(counters.shaded, uint(wanted))
+}

@@ -1,0 +1,178 @@
+// What stands between a point and up to four lights. All invocations of a subgroup must call
+// trace_shadows together.
+#ifndef SHADOW_GLSL
+#define SHADOW_GLSL
+
+#include "candidates.glsl"
+#include "intersect.glsl"
+
+// The rays from one point towards four lights, one a component.
+struct shadow_rays {
+    vec4 x, y, z; // unit directions
+    vec4 t_max;   // a little short of the light
+    bvec4 wanted;
+    // The optical depth of what stands in the way, by channel: -log2 of what is left of the light in
+    // LR_SHADOW_UNIT; LR_SHADOW_OPAQUE when nothing is. In integers, so that no order matters.
+    uvec4 red, green, blue;
+};
+
+float pick(vec4 v, uint i)
+{
+    return i == 0u ? v.x : (i == 1u ? v.y : (i == 2u ? v.z : v.w));
+}
+
+uint pick(uvec4 v, uint i)
+{
+    return i == 0u ? v.x : (i == 1u ? v.y : (i == 2u ? v.z : v.w));
+}
+
+uvec4 replaced(uvec4 v, uint i, uint by)
+{
+    return uvec4(i == 0u ? by : v.x, i == 1u ? by : v.y, i == 2u ? by : v.z, i == 3u ? by : v.w);
+}
+
+vec4 replaced(vec4 v, uint i, float by)
+{
+    return vec4(i == 0u ? by : v.x, i == 1u ? by : v.y, i == 2u ? by : v.z, i == 3u ? by : v.w);
+}
+
+bool crosses(vec2 crossing, float t_max)
+{
+    return (crossing.x > 0.0 && crossing.x < t_max) || (crossing.y > 0.0 && crossing.y < t_max);
+}
+
+// What one transparent object takes from the light: its transmit colour once per surface, and its
+// absorption over the length inside.
+uvec3 tint(vec2 crossing, float t_max, uint object)
+{
+    bool first = crossing.x > 0.0 && crossing.x < t_max;
+    bool second = crossing.y > 0.0 && crossing.y < t_max;
+    uint surfaces = (first ? 1u : 0u) + (second ? 1u : 0u);
+    uvec4 shadow = load_object_shadow(object);
+    uvec3 add = shadow.xyz * surfaces;
+    if (has_absorption && surfaces != 0u && shadow.w != 0u) {
+        float inside = max(min(crossing.y, t_max) - max(crossing.x, 0.0), 0.0);
+        add += uvec3(min(load_medium(shadow.w).absorption * inside, vec3(40.0)) * LR_SHADOW_UNIT);
+    }
+    return add;
+}
+
+// Adds to the depth of ray l what a primitive takes; returns whether nothing is left.
+bool dim(inout shadow_rays rays, uint l, vec2 crossing, float t_max, uint object, uint flags)
+{
+    uvec3 add = crosses(crossing, t_max) ? uvec3(LR_SHADOW_OPAQUE) : uvec3(0u);
+    if (has_transparent && (flags & LR_FLAG_TRANSPARENT) != 0u)
+        add = tint(crossing, t_max, object);
+    if ((flags & LR_FLAG_SHADOW) == 0u)
+        add = uvec3(0u);
+    uvec3 depth = uvec3(pick(rays.red, l), pick(rays.green, l), pick(rays.blue, l));
+    depth = min(depth + add, uvec3(LR_SHADOW_OPAQUE));
+    rays.red = replaced(rays.red, l, depth.x);
+    rays.green = replaced(rays.green, l, depth.y);
+    rays.blue = replaced(rays.blue, l, depth.z);
+    return depth == uvec3(LR_SHADOW_OPAQUE);
+}
+
+bool dim_plane(inout shadow_rays rays, uint l, uint i, vec3 o, vec3 d, float t_max)
+{
+    gpu_plane p = load_plane(i);
+    return dim(rays, l, intersect_plane(o, d, p.normal, p.offset), t_max, p.object, p.flags);
+}
+
+bool dim_sphere(inout shadow_rays rays, uint l, uint i, vec3 o, vec3 d, float t_max)
+{
+    gpu_sphere s = load_sphere(i);
+    float inv_a = ex_rcp(ex_dot(d, d));
+    return dim(rays, l, intersect_sphere(o, d, inv_a, s), t_max, s.object, s.flags);
+}
+
+bool dim_flat(inout shadow_rays rays, uint l, uint i, vec3 o, vec3 d, float t_max)
+{
+    gpu_flat f = load_flat(i);
+    return dim(rays, l, intersect_flat(o, d, f), t_max, f.object, f.flags);
+}
+
+bool dim_solid(inout shadow_rays rays, uint l, uint i, vec3 o, vec3 d, float t_max)
+{
+    gpu_solid s = load_solid(i);
+    return dim(rays, l, intersect_solid(o, d, s, i), t_max, s.object, s.flags);
+}
+
+// Runs `test` on each candidate i of one kind for each ray l: every invocation goes through its own
+// pairs of the two, so few rounds serve all of them. Loops end at their bottom, as in trace.glsl.
+#define FOR_EACH_PAIR(kind_bits, test)                                                             \
+    {                                                                                              \
+        uvec4 left = bits & (kind_bits);                                                           \
+        if (left != uvec4(0u))                                                                     \
+            for (;;) {                                                                             \
+                uint l = left.x != 0u ? 0u : (left.y != 0u ? 1u : (left.z != 0u ? 2u : 3u));       \
+                uint mine = pick(left, l), i = first + lowest_bit(mine);                           \
+                vec3 d = vec3(pick(rays.x, l), pick(rays.y, l), pick(rays.z, l));                  \
+                float t_max = pick(rays.t_max, l);                                                 \
+                bool dark = test;                                                                  \
+                left = replaced(left, l, dark ? 0u : mine & (mine - 1u));                          \
+                if (left == uvec4(0u))                                                             \
+                    break;                                                                         \
+            }                                                                                      \
+    }
+
+void trace_shadows(inout shadow_rays rays, vec3 o, uint ray_count)
+{
+    rays.red = rays.green = rays.blue = uvec4(0u);
+    if (has_planes)
+        for (uint first = frame.planes.begin;;) {
+            uvec4 bits = uvec4(0u);
+            gpu_plane p = load_plane(first);
+            for (uint l = 0u;;) {
+                vec3 d = vec3(pick(rays.x, l), pick(rays.y, l), pick(rays.z, l));
+                vec2 crossing = intersect_plane(o, d, p.normal, p.offset);
+                bits = replaced(bits, l, crosses(crossing, pick(rays.t_max, l)) ? 1u : 0u);
+                l++;
+                if (l >= ray_count)
+                    break;
+            }
+            bits = bits * uvec4(rays.wanted);
+            if (has_transparent_planes) {
+                FOR_EACH_PAIR(1u, dim_plane(rays, l, i, o, d, t_max))
+            } else if ((p.flags & LR_FLAG_SHADOW) != 0u) {
+                rays.red |= bits * LR_SHADOW_OPAQUE;
+                rays.green |= bits * LR_SHADOW_OPAQUE;
+                rays.blue |= bits * LR_SHADOW_OPAQUE;
+            }
+            first++;
+            if (first >= hidden(frame.planes.end))
+                break;
+        }
+    if (has_bounded) {
+        uint stop = hidden(frame.bounded);
+        for (uint first = 0u;;) {
+            uvec4 bits = uvec4(0u);
+            for (uint at = 0u;;) {
+                vec4 held = load_ball(first + at, stop);
+                for (uint l = 0u;;) {
+                    vec3 d = vec3(pick(rays.x, l), pick(rays.y, l), pick(rays.z, l));
+                    uint found = batch_candidates(held, o, d) << (at & 31u);
+                    bits = replaced(bits, l, pick(bits, l) | found);
+                    l++;
+                    if (l >= ray_count)
+                        break;
+                }
+                at += batch_size();
+                if (at >= 32u || first + at >= stop)
+                    break;
+            }
+            bits = bits * uvec4(rays.wanted) & bits_before(stop, first);
+            if (has_spheres)
+                FOR_EACH_PAIR(bits_of(frame.spheres, first), dim_sphere(rays, l, i, o, d, t_max))
+            if (has_flats)
+                FOR_EACH_PAIR(bits_of(frame.flats, first), dim_flat(rays, l, i, o, d, t_max))
+            if (has_solids)
+                FOR_EACH_PAIR(bits_of(frame.solids, first), dim_solid(rays, l, i, o, d, t_max))
+            first += 32u;
+            if (first >= stop)
+                break;
+        }
+    }
+}
+
+#endif
