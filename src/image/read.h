@@ -9,7 +9,7 @@ enum {
     LR_IMAGE_MAX_SAMPLES = 1 << 28, /* of one picture; more are refused */
 };
 
-/* A key and a value that the file carries beside its pixels, UTF-8 as far as the file is right. */
+/* A key and a value that the file carries beside its pixels, in the bytes that it has there. */
 typedef struct lr_image_text {
     char *key, *value;
 } lr_image_text;
@@ -31,11 +31,11 @@ typedef struct lr_image {
  *   PNG  all kinds; palettes become RGB and transparent colours alpha. Greys of 1, 2 and 4 bits
  *        have maxval 1, 3 and 15; gAMA and sRGB change nothing.
  *   PFM  PF and Pf, times the absolute value of the scale.
- *   EXR  the first part, flat, of one resolution: R G B A or Y A, else those of the first layer
- * that has some. The picture is the display window; where there are no data it is 0. HDR  RGBE with
- * rows from top to bottom; EXPOSURE is not applied. LR_ERROR_FILE, with the path in the message,
- * when the file cannot be read, is in no known format, truncated, corrupt, empty of pixels, or
- * larger than LR_IMAGE_MAX_SAMPLES; LR_ERROR_MEMORY. */
+ *   EXR  the first part, flat, without B44 and DWA: R G B A or Y A, else those of the first layer
+ *        that has some. The picture is the display window, 0 where there are no data.
+ *   HDR  RGBE with rows from top to bottom; EXPOSURE is not applied.
+ * LR_ERROR_FILE, with the path in the message, when the file cannot be read, is in no known format,
+ * truncated, corrupt, empty of pixels, or larger than LR_IMAGE_MAX_SAMPLES; LR_ERROR_MEMORY. */
 lr_status lr_image_read(const char *path, lr_image *image, lr_error *error);
 
 /* The same from a file in memory; name stands for it in messages. */
