@@ -146,7 +146,8 @@ static lr_status keep_texts(const exr_input *exr)
         const exr_attribute_t *attribute;
         if (exr_get_attribute_by_index(exr->context, 0, EXR_ATTR_LIST_FILE_ORDER, i, &attribute) !=
                 EXR_ERR_SUCCESS ||
-            attribute->type != EXR_ATTR_STRING || !attribute->string->str)
+            attribute->type != EXR_ATTR_STRING || !attribute->string->str ||
+            strcmp(attribute->name, "type") == 0) /* how the pixels are stored */
             continue;
         lr_status status =
             image_add_text(exr->file, exr->image, attribute->name, strlen(attribute->name),
