@@ -5,9 +5,9 @@
 
 #include "base/status.h"
 
-enum {
-    LR_IMAGE_MAX_SAMPLES = 1 << 28, /* of one picture; more are refused */
-};
+#ifndef LR_IMAGE_MAX_SAMPLES
+#define LR_IMAGE_MAX_SAMPLES (1 << 28) /* of one picture; more are refused */
+#endif
 
 /* A key and a value that the file carries beside its pixels, in the bytes that it has there. */
 typedef struct lr_image_text {
