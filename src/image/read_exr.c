@@ -126,7 +126,7 @@ static lr_status choose_channels(exr_input *exr, uint32_t *count)
     }
     if (*count == 0)
         return refuse(exr, "has no channels that make a picture: neither R, G and B nor Y");
-    if (find_channel(list, "", 0, "RY") >= 0)
+    if (*count < 3 && find_channel(list, "", 0, "RY") >= 0)
         return refuse(exr, "holds luminance and chroma; convert it to R, G and B");
     for (uint32_t i = 0; i < *count; i++) {
         const exr_attr_chlist_entry_t *entry = &list->entries[exr->channels[i]];
