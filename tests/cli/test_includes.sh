@@ -59,6 +59,7 @@ only vulkan/ gpu
 only GLFW/ preview
 only libfyaml scene
 only png image
+only OpenEXR/ image
 only jansson cli scene
 
 # The public header stands alone.
