@@ -357,7 +357,7 @@ static size_t fill_record(uint32_t *seed, const char *record, uint32_t *words)
 }
 
 typedef struct upload {
-    uint32_t rows[4096], frame[64], work[16], counters[64], rays[64], hits[64];
+    uint32_t rows[4096], frame[128], work[16], counters[128], rays[128], hits[128];
     uint32_t expected[1024];
     size_t row_words, expected_words;
 } upload;
