@@ -58,7 +58,7 @@ typedef struct lr_rectangle {
     uint32_t x, y, width, height; /* pixels from the top left corner; may reach over the edges */
 } lr_rectangle;
 
-enum { LR_IGNORED_MAX = 64 };
+enum { LR_IGNORED_MAX = 64, LR_PPD_MAX = 1000 };
 
 /* Zero means the default; nothing pointed to is copied or freed. */
 typedef struct lr_compare_options {
