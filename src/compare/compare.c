@@ -103,6 +103,46 @@ static lr_status measure(const compare_pair *pair, const lr_compare_options *opt
     return status;
 }
 
+/* The map that regions and the heat map are made of: FLIP where it was measured, else the largest
+ * difference of each pixel's samples; -1 where nothing is compared. */
+static lr_status make_map(const compare_pair *pair, lr_compare_result *result, lr_error *error)
+{
+    size_t count = (size_t)pair->width * pair->height;
+    bool measured = result->map;
+    if (!measured) {
+        result->map = lr_alloc(count, sizeof *result->map);
+        result->map_name = "difference";
+    }
+    if (!result->map)
+        return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the map of differences");
+    for (size_t i = 0; i < count; i++)
+        if (!compare_is_used(pair, i))
+            result->map[i] = -1;
+        else if (!measured)
+            result->map[i] = compare_largest(pair, i);
+    return LR_OK;
+}
+
+static lr_status explain(const compare_pair *pair, const lr_compare_options *options,
+                         lr_compare_result *result, lr_error *error)
+{
+    lr_status status = LR_OK;
+    if (options->map || (options->explain && result->different))
+        status = make_map(pair, result, error);
+    if (options->explain && result->different) {
+        if (status == LR_OK)
+            status = compare_regions(pair, options, result->map, result, error);
+        if (status == LR_OK)
+            status = compare_explain(pair, result, error);
+    }
+    if (!options->map) {
+        free(result->map);
+        result->map = NULL;
+        result->map_name = NULL;
+    }
+    return status;
+}
+
 lr_status lr_compare(const lr_image *reference, const lr_image *test,
                      const lr_compare_options *options, lr_compare_result *result, lr_error *error)
 {
@@ -122,6 +162,8 @@ lr_status lr_compare(const lr_image *reference, const lr_image *test,
         status = measure(&pair, options, result, error);
     if (status == LR_OK)
         judge(options, result);
+    if (status == LR_OK)
+        status = explain(&pair, options, result, error);
     compare_release(&pair);
     if (status != LR_OK)
         lr_compare_result_free(result);

@@ -16,30 +16,30 @@
 #include "base/status.h"
 #include "image/read.h"
 
-/* id, name, stands for the limit in help, help of at most 56 columns a line. A metric passes when
- * its value is at most the limit; PSNR, SSIM and NOISE when it is at least the limit. */
-#define LR_METRICS(X)                                                                              \
-    X(EXACT, "exact", NULL, "no pixel may differ at all; the default")                             \
+/* The metrics that have a limit: id, name, what stands for the limit in help, help of at most 56
+ * columns a line. A metric passes when its value is at most the limit; PSNR, SSIM and NOISE when it
+ * is at least the limit. */
+#define LR_LIMITS(X)                                                                               \
     X(ABS, "abs", "E",                                                                             \
-      "no sample may differ by more than E (1 is white);\n"                                        \
-      "see --abs-percent")                                                                         \
-    X(REL, "rel", "E",                                                                             \
-      "... by more than E times the larger of the two;\n"                                          \
-      "see --rel-percent")                                                                         \
-    X(MAX_ABS, "max-abs", "E", "the largest difference of all, whatever the percentages")          \
-    X(MAX_REL, "max-rel", "E", "the largest relative difference of all")                           \
-    X(MSE, "mse", "E", "mean squared error")                                                       \
-    X(RMSE, "rmse", "E", "root of the mean squared error")                                         \
+      "no sample may differ by more than E; white is 1, and\n"                                     \
+      "E may be a quotient such as 2/255")                                                         \
+    X(REL, "rel", "E", "... by more than E times the larger of the two")                           \
+    X(MAX_ABS, "max-abs", "E", "the same as --abs, whatever --abs-percent")                        \
+    X(MAX_REL, "max-rel", "E", "the same as --rel, whatever --rel-percent")                        \
+    X(MSE, "mse", "E", "mean squared error, at most E")                                            \
+    X(RMSE, "rmse", "E", "its root")                                                               \
     X(RELMSE, "relmse", "E", "mean of squared error / (reference^2 + 0.01)")                       \
     X(PSNR, "psnr", "DB", "peak signal to noise ratio, at least DB decibels")                      \
-    X(SSIM, "ssim", "S", "structural similarity of the luma, at least S of 1")                     \
-    X(FLIP_MEAN, "flip-mean", "E", "mean of the FLIP error, 0 to 1; HDR-FLIP for floats")          \
-    X(FLIP_P99, "flip-p99", "E", "FLIP error that 99 % of the pixels stay within")                 \
-    X(FLIP_MAX, "flip-max", "E", "largest FLIP error")                                             \
+    X(SSIM, "ssim", "S", "structural similarity of the luma, at least S")                          \
+    X(FLIP_MEAN, "flip-mean", "E", "mean FLIP error, 0 to 1; HDR-FLIP of floats")                  \
+    X(FLIP_P99, "flip-p99", "E", "the FLIP error that 99 % of the pixels stay within")             \
+    X(FLIP_MAX, "flip-max", "E", "the largest FLIP error")                                         \
     X(NOISE, "noise", "P",                                                                         \
-      "differences must be explained by the noise, with a\n"                                       \
-      "false alarm in at most P of all comparisons;\n"                                             \
-      "needs variances or halves")
+      "the difference must be explained by the pictures'\n"                                        \
+      "noise; P is how often a false alarm is accepted, such\n"                                    \
+      "as 0.01. Needs variances or halves")
+
+#define LR_METRICS(X) X(EXACT, "exact", NULL, "no pixel may differ; the default") LR_LIMITS(X)
 
 typedef enum lr_metric {
 #define X(id, name, value, help) LR_METRIC_##id,
@@ -181,5 +181,9 @@ void lr_compare_describe(const lr_compare_result *result, char *text, size_t siz
  * looked at; write it with lr_picture_write. The caller frees it. */
 lr_status lr_compare_heat_map(const lr_image *reference, const lr_compare_result *result,
                               lr_picture *picture, lr_error *error);
+
+/* The map itself as a picture, each error in all three channels. The caller frees it. */
+lr_status lr_compare_error_map(const lr_compare_result *result, lr_picture *picture,
+                               lr_error *error);
 
 #endif

@@ -35,6 +35,12 @@ static inline bool compare_is_used(const compare_pair *pair, size_t pixel)
  * integers with the same maxval the quotient nearest to the true one. */
 double compare_difference(const compare_pair *pair, float reference, float test);
 
+/* The same as a share of the larger sample. */
+double compare_relative(const compare_pair *pair, float reference, float test);
+
+/* The largest difference of a pixel's samples. */
+float compare_largest(const compare_pair *pair, size_t pixel);
+
 /* Whether the rows hold the same bits. */
 bool compare_same_row(const compare_pair *pair, uint32_t y);
 
@@ -50,5 +56,17 @@ float compare_select(const float *values, size_t count, size_t rank);
 
 /* The mean structural similarity of the compared pixels. */
 lr_status compare_ssim(const compare_pair *pair, double *similarity, lr_error *error);
+
+/* Finds the regions that differ; errors are the map's values. */
+lr_status compare_regions(const compare_pair *pair, const lr_compare_options *options,
+                          const float *errors, lr_compare_result *result, lr_error *error);
+
+/* Finds the cause of a difference that there is. */
+lr_status compare_explain(const compare_pair *pair, lr_compare_result *result, lr_error *error);
+
+/* The noise test: the family-wise p-value, and into map (unless NULL) each pixel's |z|. */
+lr_status compare_noise(const lr_image *reference, const lr_image *test, const compare_pair *pair,
+                        const lr_compare_options *options, double *p_value, float *map,
+                        lr_error *error);
 
 #endif

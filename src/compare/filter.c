@@ -1,8 +1,10 @@
 #include "compare/filter.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/exact.h"
+#include "base/memory.h"
 
 /* Four of these stay in registers: enough sums in flight to hide the latency of an addition. */
 typedef float lanes __attribute__((vector_size(16)));
@@ -88,4 +90,31 @@ void filter_across(float *out, const float *const *middle, uint32_t width,
         for (int i = 0; i < VECTORS; i++)
             store(out + x + 4 * i, sum[i]);
     }
+}
+
+bool filter_plane(float *out, const float *in, uint32_t width, uint32_t height,
+                  const filter_kernel *kernel)
+{
+    uint32_t radius = kernel->radius;
+    size_t size = filter_row_size(width);
+    float *along = lr_alloc(size * height, sizeof *along);
+    float *padded = lr_alloc(size + 2 * radius, sizeof *padded);
+    for (uint32_t y = 0; along && padded && y < height; y++) {
+        memcpy(padded + radius, in + (size_t)y * width, width * sizeof *in);
+        filter_pad(padded + radius, width, radius);
+        filter_along(along + y * size, padded + radius, width, kernel);
+    }
+    for (uint32_t y = 0; along && padded && y < height; y++) {
+        const float *rows[2 * FILTER_RADIUS_MAX + 1];
+        for (uint32_t k = 0; k <= 2 * radius; k++) {
+            int64_t row = (int64_t)y + k - radius;
+            row = row < 0 ? 0 : row >= height ? height - 1 : row;
+            rows[k] = along + (size_t)row * size;
+        }
+        filter_across(out + y * size, rows + radius, width, kernel);
+    }
+    bool done = along && padded;
+    free(along);
+    free(padded);
+    return done;
 }

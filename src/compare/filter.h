@@ -37,4 +37,9 @@ void filter_along(float *out, const float *center, uint32_t width, const filter_
 void filter_across(float *out, const float *const *middle, uint32_t width,
                    const filter_kernel *kernel);
 
+/* A whole plane: rows of width floats without gaps into rows of filter_row_size(width), the edges
+ * repeated. False when memory is out. */
+bool filter_plane(float *out, const float *in, uint32_t width, uint32_t height,
+                  const filter_kernel *kernel);
+
 #endif

@@ -20,8 +20,9 @@ double compare_difference(const compare_pair *pair, float reference, float test)
     return pair->maxval ? floor(difference * pair->maxval + 0.5) / pair->maxval : difference;
 }
 
-static double relative(float reference, float test, double difference)
+double compare_relative(const compare_pair *pair, float reference, float test)
 {
+    double difference = compare_difference(pair, reference, test);
     if (difference == 0 || isinf(difference))
         return difference;
     return difference / fmax(fabs((double)reference), fabs((double)test));
@@ -61,7 +62,7 @@ static void add_pixel(const compare_pair *pair, const lr_compare_options *option
         double square = d * d, r = reference[c];
         s->square += square;
         s->relative_square += isinf(d) ? d : square / (r * r + 0.01);
-        largest_relative = fmax(largest_relative, relative(reference[c], test[c], d));
+        largest_relative = fmax(largest_relative, compare_relative(pair, reference[c], test[c]));
         if (d > largest)
             largest = d;
         if (d > result->max_difference) {

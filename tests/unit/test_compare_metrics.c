@@ -341,6 +341,7 @@ static void test_percentile(void **state)
     (void)state;
     lr_image a = make(reference_samples, 3, 255, 0), b = make(test_samples, 3, 255, 0);
     lr_compare_options options = with("flip-p99", "1");
+    options.map = true;
     b.samples[0] = 1;
     lr_compare_result result = compare(&a, &b, &options);
     const float *map = result.map;
