@@ -157,6 +157,14 @@ static json_t *cause_json(const lr_compare_result *r)
     return cause;
 }
 
+static json_t *noise_json(const lr_compare_result *r)
+{
+    const lr_rectangle *box = &r->noise_box;
+    return json_pack("{s:I, s:I, s:I, s:I, s:o}", "x", (json_int_t)box->x, "y", (json_int_t)box->y,
+                     "width", (json_int_t)box->width, "height", (json_int_t)box->height,
+                     "standard_deviations", number(r->noise_z));
+}
+
 static json_t *difference_json(const lr_compare_result *r)
 {
     return json_pack(
@@ -187,6 +195,8 @@ json_t *comparison_json(const lr_compare_result *r, const char *reference, const
     json_object_set_new(json, "compared_pixels", json_integer((json_int_t)r->compared));
     json_object_set_new(json, "different_pixels", json_integer((json_int_t)r->different_pixels));
     json_object_set_new(json, "non_finite_pixels", json_integer((json_int_t)r->non_finite));
+    if (r->metrics[LR_METRIC_NOISE].measured)
+        json_object_set_new(json, "noise", noise_json(r));
     json_object_set_new(json, "converted", json_boolean(r->converted));
     if (r->different) {
         json_object_set_new(json, "difference", difference_json(r));

@@ -79,8 +79,9 @@ static void judge(const lr_compare_options *options, lr_compare_result *result)
     }
 }
 
-static lr_status measure(const compare_pair *pair, const lr_compare_options *options,
-                         lr_compare_result *result, lr_error *error)
+static lr_status measure(const lr_image *reference, const lr_image *test, const compare_pair *pair,
+                         const lr_compare_options *options, lr_compare_result *result,
+                         lr_error *error)
 {
     lr_status status = LR_OK;
     result->channels = pair->colors + pair->alpha;
@@ -89,12 +90,18 @@ static lr_status measure(const compare_pair *pair, const lr_compare_options *opt
     compare_pixels(pair, options, result);
     if (options->wanted[LR_METRIC_SSIM])
         status = compare_ssim(pair, &result->metrics[LR_METRIC_SSIM].value, error);
-    if (wants_flip(options) && status == LR_OK) {
+    if (wants_flip(options) || options->wanted[LR_METRIC_NOISE]) {
         size_t count = (size_t)pair->width * pair->height;
         result->map = lr_alloc(count, sizeof *result->map);
-        result->map_name = "FLIP";
         if (!result->map)
-            return lr_fail(error, LR_ERROR_MEMORY, "out of memory for FLIP");
+            return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the map of errors");
+    }
+    if (options->wanted[LR_METRIC_NOISE] && status == LR_OK) {
+        result->map_name = "|z|";
+        status = compare_noise(reference, test, pair, options, result, error);
+    }
+    if (wants_flip(options) && status == LR_OK) {
+        result->map_name = "FLIP"; /* rather than the noise's */
         status =
             compare_flip(pair, options->ppd > 0 ? options->ppd : PPD_DEFAULT, result->map, error);
         if (status == LR_OK)
@@ -132,7 +139,9 @@ static lr_status explain(const compare_pair *pair, const lr_compare_options *opt
     if (options->explain && result->different) {
         if (status == LR_OK)
             status = compare_regions(pair, options, result->map, result, error);
-        if (status == LR_OK)
+        if (status == LR_OK && result->metrics[LR_METRIC_NOISE].pass)
+            result->cause = LR_CAUSE_NOISE; /* as it was tested */
+        else if (status == LR_OK)
             status = compare_explain(pair, result, error);
     }
     if (!options->map) {
@@ -159,7 +168,7 @@ lr_status lr_compare(const lr_image *reference, const lr_image *test,
     compare_pair pair;
     status = compare_prepare(reference, test, options, &pair, error);
     if (status == LR_OK)
-        status = measure(&pair, options, result, error);
+        status = measure(reference, test, &pair, options, result, error);
     if (status == LR_OK)
         judge(options, result);
     if (status == LR_OK)

@@ -149,8 +149,9 @@ typedef struct lr_compare_result {
     double max_difference; /* of all samples, and where */
     uint32_t max_x, max_y, max_channel;
 
-    /* With explain. Regions are of the pixels that break the tightest per-pixel limit (ABS, REL, or
-     * a FLIP limit), or of all differing ones; the ones with the largest `total` first. */
+    /* With explain. Regions are of the pixels that break a limit of single pixels (ABS, REL,
+     * FLIP_P99, FLIP_MAX), without such limits of all that differ, and with NOISE of none; those
+     * with the largest total first. */
     uint64_t region_count;
     uint32_t regions_kept;
     lr_region regions[LR_REGIONS_MAX];
@@ -160,9 +161,14 @@ typedef struct lr_compare_result {
     double gain[3], offset[3], gamma; /* COLOR: test = gain * reference^gamma + offset */
     uint8_t order[3];                 /* CHANNELS: the test's channels are these of the reference */
 
-    float *
-        map; /* width * height errors, negative for pixels not compared; NULL without options.map */
-    const char *map_name; /* what they are: "FLIP", "difference", "z" */
+    /* NOISE: the block (a pixel; 4, 16 or 64 pixels along its side; the picture) that the noise
+     * explains the least, and by how many standard deviations its mean differs. */
+    lr_rectangle noise_box;
+    double noise_z;
+
+    /* With map: width * height errors, -1 for pixels that are not compared. */
+    float *map;
+    const char *map_name; /* what they are: "FLIP", "difference", "|z|" */
 } lr_compare_result;
 
 /* Compares. LR_OK whatever the outcome, also when the sizes differ; LR_ERROR_ARGUMENT for a mask,

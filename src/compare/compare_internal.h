@@ -64,9 +64,10 @@ lr_status compare_regions(const compare_pair *pair, const lr_compare_options *op
 /* Finds the cause of a difference that there is. */
 lr_status compare_explain(const compare_pair *pair, lr_compare_result *result, lr_error *error);
 
-/* The noise test: the family-wise p-value, and into map (unless NULL) each pixel's |z|. */
+/* The noise test: NOISE's value and its place, and into result->map (unless NULL) the score of each
+ * pixel: its difference in standard deviations. */
 lr_status compare_noise(const lr_image *reference, const lr_image *test, const compare_pair *pair,
-                        const lr_compare_options *options, double *p_value, float *map,
+                        const lr_compare_options *options, lr_compare_result *result,
                         lr_error *error);
 
 #endif

@@ -114,7 +114,10 @@ static void write_cause(writer *w, const lr_compare_result *r)
         write(w, "Values are rounded otherwise, to a step or to fewer levels.");
         break;
     case LR_CAUSE_NOISE:
-        write(w, "Uncorrelated noise all over the picture.");
+        if (r->metrics[LR_METRIC_NOISE].pass)
+            write(w, "The pictures' noise explains all that differs.");
+        else
+            write(w, "Uncorrelated noise all over the picture.");
         break;
     case LR_CAUSE_BLUR:
         write(w, "The picture is blurred.");
@@ -146,4 +149,9 @@ void lr_compare_describe(const lr_compare_result *result, char *text, size_t siz
               result->width, result->height, result->test_width, result->test_height);
     else if (result->cause != LR_CAUSE_NONE)
         write_cause(&w, result);
+    const lr_metric_result *noise = &result->metrics[LR_METRIC_NOISE];
+    if (noise->measured && !noise->pass)
+        write(&w, " The noise does not explain %u x %u pixels at %u,%u: %.3g standard deviations.",
+              result->noise_box.width, result->noise_box.height, result->noise_box.x,
+              result->noise_box.y, result->noise_z);
 }

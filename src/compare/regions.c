@@ -36,6 +36,8 @@ static bool is_marked(const compare_pair *pair, const lr_compare_options *option
     const bool *wanted = options->wanted;
     const double *limits = options->limits;
     bool by_flip = flip && (wanted[LR_METRIC_FLIP_P99] || wanted[LR_METRIC_FLIP_MAX]);
+    if (wanted[LR_METRIC_NOISE]) /* all pixels differ a little: what counts is tested by blocks */
+        return false;
     if (wanted[LR_METRIC_EXACT] || (!wanted[LR_METRIC_ABS] && !wanted[LR_METRIC_REL] && !by_flip))
         return compare_largest(pair, pixel) > 0;
     if (wanted[LR_METRIC_ABS] && (double)compare_largest(pair, pixel) > limits[LR_METRIC_ABS])

@@ -88,6 +88,34 @@ END
 expect 1 "$lavaray" compare "$a" "$work/small.ppm" --diff "$work/none.png" && says err 'not written'
 [ ! -e "$work/none.png" ] || problem 'a heat map of different sizes'
 
+# Noise: pictures of 64 x 48 floats with a standard deviation of 0.1 around 1 and 1.02.
+python3 - "$work" <<'END'
+import random, struct, sys
+random.seed(3)
+def write(name, mean, deviation):
+    values = [random.gauss(mean, deviation) for _ in range(64 * 48 * 3)]
+    with open(sys.argv[1] + "/" + name + ".pfm", "wb") as file:
+        file.write(b"PF\n64 48\n-1\n" + struct.pack("<%df" % len(values), *values))
+for name in "a1", "a2", "b1", "b2":
+    write(name, 1, 0.1)
+write("c1", 1.02, 0.1)
+write("c2", 1.02, 0.1)
+write("v", 0.01, 0)
+END
+cd "$work" || exit 1
+expect 0 "$lavaray" compare a1.pfm b1.pfm --noise 0.001 --reference-half a2.pfm --test-half b2.pfm
+says out 'noise explains all'
+expect 1 "$lavaray" compare a1.pfm c1.pfm --noise 0.001 --reference-half a2.pfm --test-half c2.pfm
+says out 'FAIL +noise'
+says out 'does not explain 64 x 48 pixels at 0,0: [0-9.]+ standard deviations'
+expect 0 "$lavaray" compare a1.pfm b1.pfm --noise 0.001 --reference-variance v.pfm --test-variance v.pfm
+expect 1 "$lavaray" compare a1.pfm c1.pfm --noise 0.001 --reference-variance v.pfm --test-variance v.pfm \
+    --diff z.pfm --json - && says out '"standard_deviations"'
+expect 1 "$lavaray" compare a1.pfm b1.pfm --noise 0.001 --test-variance v.pfm # too little noise
+expect 2 "$lavaray" compare a1.pfm b1.pfm --noise 0.001 --test-variance small.ppm
+says err 'variance has 64 x 47 pixels'
+cd "$OLDPWD" || exit 1
+
 # Mistakes.
 wrong() {
     local pattern=$1
