@@ -70,7 +70,7 @@ static bool is_mirrored(const cause_view *view, lr_compare_result *result, bool 
 {
     (void)out_of_memory;
     rearranged r = {.order = {0, 1, 2}};
-    double all = squares(view, r, 1e300), allowed = (1 - ENOUGH) * all;
+    double all = view->sample_energy, allowed = (1 - ENOUGH) * all;
     for (int way = 1; way <= 3; way++) {
         r.across = way & 1;
         r.down = way & 2;
@@ -91,7 +91,7 @@ static bool is_channels(const cause_view *view, lr_compare_result *result, bool 
     if (view->pair->colors != 3)
         return false;
     rearranged r = {.order = {0, 1, 2}};
-    double all = squares(view, r, 1e300), allowed = (1 - ENOUGH) * all;
+    double all = view->sample_energy, allowed = (1 - ENOUGH) * all;
     for (int i = 0; i < 5; i++) {
         memcpy(r.order, orders[i], sizeof r.order);
         double rest = squares(view, r, allowed);
@@ -128,6 +128,15 @@ static uint32_t count_groups(unsigned char *blocks, uint32_t columns, uint32_t r
     return groups;
 }
 
+static bool differs(const compare_pair *pair, size_t pixel)
+{
+    size_t first = pixel * pair->stride;
+    for (uint32_t c = 0; c < pair->colors + pair->alpha; c++)
+        if (pair->reference[first + c] != pair->test[first + c])
+            return true;
+    return false;
+}
+
 /* Few places, and less than half of the picture. */
 static bool is_local(const cause_view *view, lr_compare_result *result, bool *out_of_memory)
 {
@@ -140,7 +149,7 @@ static bool is_local(const cause_view *view, lr_compare_result *result, bool *ou
     }
     for (uint32_t y = 0; y < view->height; y++)
         for (uint32_t x = 0; x < view->width; x++)
-            if (compare_largest(view->pair, (size_t)y * view->width + x) > 0)
+            if (differs(view->pair, (size_t)y * view->width + x))
                 blocks[(y / BLOCK) * columns + x / BLOCK] = 1;
     for (uint32_t i = 0; i < columns * rows; i++)
         marked += blocks[i];
@@ -192,6 +201,7 @@ lr_status compare_explain(const compare_pair *pair, lr_compare_result *result, l
     };
     cause_view view;
     bool out_of_memory = !make_view(pair, &view);
+    view.sample_energy = squares(&view, (rearranged){.order = {0, 1, 2}}, 1e300);
     result->cause = LR_CAUSE_UNKNOWN;
     for (size_t i = 0; i < sizeof detectors / sizeof *detectors && !out_of_memory; i++)
         if (detectors[i](&view, result, &out_of_memory))

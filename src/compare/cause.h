@@ -11,7 +11,8 @@ typedef struct cause_view {
     /* Luma, of float pictures compressed to 0..1 and encoded, so that bright spots do not outweigh
      * everything else. */
     float *reference, *test;
-    double energy; /* the sum of their squared differences */
+    double energy;        /* the sum of their squared differences */
+    double sample_energy; /* the same of the colour samples as stored */
 } cause_view;
 
 /* Records a cause that explains this share of the squared difference. */

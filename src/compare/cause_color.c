@@ -25,7 +25,7 @@ typedef struct fit {
 static uint32_t bin_of(const compare_pair *pair, double value)
 {
     if (!pair->linear)
-        return (uint32_t)(fmin(fmax(value, 0), 1) * (BINS - 1) + 0.5);
+        return (uint32_t)((value < 0 ? 0 : value > 1 ? 1 : value) * (BINS - 1) + 0.5);
     double place = value > 0 ? (lr_log2(value) + 32) * 64 : 0;
     return (uint32_t)fmin(fmax(place, 0), BINS - 1);
 }

@@ -25,17 +25,19 @@ static void halve(const float *in, uint32_t width, float *out, uint32_t out_widt
         }
 }
 
-/* The mean squared difference where the shifted pictures overlap; more than `worst` when there is
- * too little of that. */
-static double mean_square(const level *l, int32_t dx, int32_t dy)
+/* The mean squared difference where the shifted pictures overlap; 1e300 when there is too little of
+ * that, or when it is sure to be more than `enough`. */
+static double mean_square(const level *l, int32_t dx, int32_t dy, double enough)
 {
     int32_t width = (int32_t)l->width, height = (int32_t)l->height;
     int32_t x0 = dx > 0 ? dx : 0, x1 = dx < 0 ? width + dx : width;
     int32_t y0 = dy > 0 ? dy : 0, y1 = dy < 0 ? height + dy : height;
     if (2 * (x1 - x0) < width || 2 * (y1 - y0) < height)
         return 1e300;
-    double sum = 0;
+    double sum = 0, pixels = (double)(x1 - x0) * (y1 - y0);
     for (int32_t y = y0; y < y1; y++) {
+        if (sum > enough * pixels)
+            return 1e300;
         const float *test = l->test + (size_t)y * l->width;
         const float *reference = l->reference + (ptrdiff_t)(y - dy) * width - dx;
         float row = 0;
@@ -45,16 +47,16 @@ static double mean_square(const level *l, int32_t dx, int32_t dy)
         }
         sum += (double)row;
     }
-    return sum / ((double)(x1 - x0) * (y1 - y0));
+    return sum / pixels;
 }
 
 static double refine(const level *l, int32_t range, int32_t *dx, int32_t *dy)
 {
     int32_t from_x = *dx, from_y = *dy;
-    double best = mean_square(l, from_x, from_y);
+    double best = mean_square(l, from_x, from_y, 1e300);
     for (int32_t y = from_y - range; y <= from_y + range; y++)
         for (int32_t x = from_x - range; x <= from_x + range; x++) {
-            double here = mean_square(l, x, y);
+            double here = mean_square(l, x, y, best);
             if (here < best) {
                 best = here;
                 *dx = x;
@@ -103,7 +105,7 @@ bool cause_is_shift(const cause_view *view, lr_compare_result *result, bool *out
             rest = refine(&levels[i], i == count - 1 ? COARSE_RANGE : FINE_RANGE, &dx, &dy);
         } while (dx != from_x || dy != from_y);
     }
-    double share = 1 - rest / mean_square(&levels[0], 0, 0);
+    double share = 1 - rest / mean_square(&levels[0], 0, 0, 1e300);
     free(memory);
     if ((dx == 0 && dy == 0) || !(share >= ENOUGH))
         return false;

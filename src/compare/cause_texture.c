@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/vec.h"
+#include "compare/approx.h"
 #include "compare/cause.h"
 #include "compare/filter.h"
 
@@ -18,38 +19,46 @@ enum { LEVELS = 65536, BLOCK = 8 };
 
 static uint32_t level_of(float value)
 {
-    return (uint32_t)(fminf(fmaxf(value, 0), 1) * (LEVELS - 1) + 0.5f);
+    return (uint32_t)(approx_min(approx_max(value, 0), 1) * (LEVELS - 1) + 0.5f);
 }
 
-/* Differences of one step in many pixels, or a test with far fewer levels than the reference. */
+/* How many different levels a picture has, or some number above `most`. */
+static uint32_t count_levels(const compare_pair *pair, const float *picture, unsigned char *seen,
+                             uint32_t most)
+{
+    size_t count = (size_t)pair->width * pair->height;
+    uint32_t levels = 0;
+    memset(seen, 0, LEVELS);
+    for (size_t i = 0; i < count && levels <= most; i++)
+        for (uint32_t c = 0; c < pair->colors; c++) {
+            unsigned char *level = &seen[level_of(picture[i * pair->stride + c])];
+            levels += !*level;
+            *level = 1;
+        }
+    return levels;
+}
+
+/* Differences of one step in many pixels, or a test with far fewer levels than the reference, and
+ * differences below the distance of two. */
 bool cause_is_rounding(const cause_view *view, lr_compare_result *result, bool *out_of_memory)
 {
     const compare_pair *pair = view->pair;
-    size_t count = (size_t)view->width * view->height;
     if (pair->linear || 20 * result->different_pixels < result->compared)
         return false;
     if (pair->maxval && result->max_difference * pair->maxval < 1.5)
         return cause_found(result, LR_CAUSE_ROUNDING, 1);
-    unsigned char *seen = lr_alloc(2 * LEVELS, 1);
-    if (!seen) {
-        *out_of_memory = true;
+    double most = 1 + 1.01 / result->max_difference;
+    unsigned char *seen = lr_alloc(LEVELS, 1);
+    if (!seen || !(most < LEVELS)) {
+        *out_of_memory |= !seen;
+        free(seen);
         return false;
     }
-    for (size_t i = 0; i < count; i++)
-        for (uint32_t c = 0; c < pair->colors; c++) {
-            seen[level_of(pair->reference[i * pair->stride + c])] = 1;
-            seen[LEVELS + level_of(pair->test[i * pair->stride + c])] = 1;
-        }
-    uint32_t reference_levels = 0, test_levels = 0;
-    for (uint32_t i = 0; i < LEVELS; i++) {
-        reference_levels += seen[i];
-        test_levels += seen[LEVELS + i];
-    }
+    uint32_t test_levels = count_levels(pair, pair->test, seen, (uint32_t)most);
+    bool coarse = test_levels <= (uint32_t)most &&
+                  count_levels(pair, pair->reference, seen, LEVELS) >= 2 * test_levels;
     free(seen);
-    if (test_levels < 2 || 2 * test_levels > reference_levels ||
-        result->max_difference > 1.01 / (test_levels - 1))
-        return false;
-    return cause_found(result, LR_CAUSE_ROUNDING, 1);
+    return coarse && cause_found(result, LR_CAUSE_ROUNDING, 1);
 }
 
 /* How much of the difference is a multiple of what a Gaussian does to the reference; the multiple
@@ -71,10 +80,15 @@ static double blur_share(const cause_view *view, const float *blurred, double *f
 bool cause_is_blur(const cause_view *view, lr_compare_result *result, bool *out_of_memory)
 {
     const double enough = 0.85;
-    static const double sigmas[] = {0.5, 0.75, 1, 1.5, 2.5, 4};
+    /* What Gaussians of different widths take away looks much alike, so the first one tells whether
+     * it is worth trying the others. */
+    const double hopeless = 0.15;
+    static const double sigmas[] = {1.5, 0.5, 0.75, 1, 2.5, 4};
     float *blurred = lr_alloc((size_t)filter_row_size(view->width) * view->height, sizeof *blurred);
     double best = 0, factor = 0;
     for (size_t i = 0; i < sizeof sigmas / sizeof *sigmas && blurred; i++) {
+        if (i > 0 && best < hopeless)
+            break;
         filter_kernel kernel;
         filter_gaussian(&kernel, sigmas[i], (uint32_t)(3 * sigmas[i] + 1));
         if (!filter_plane(blurred, view->reference, view->width, view->height, &kernel)) {
@@ -145,13 +159,13 @@ static float contrast(const cause_view *view, uint32_t x, uint32_t y)
     const float *p = view->reference + (size_t)y * view->width + x;
     float largest = 0;
     if (x > 0)
-        largest = fmaxf(largest, fabsf(p[0] - p[-1]));
+        largest = approx_max(largest, fabsf(p[0] - p[-1]));
     if (x + 1 < view->width)
-        largest = fmaxf(largest, fabsf(p[0] - p[1]));
+        largest = approx_max(largest, fabsf(p[0] - p[1]));
     if (y > 0)
-        largest = fmaxf(largest, fabsf(p[0] - *(p - view->width)));
+        largest = approx_max(largest, fabsf(p[0] - *(p - view->width)));
     if (y + 1 < view->height)
-        largest = fmaxf(largest, fabsf(p[0] - p[view->width]));
+        largest = approx_max(largest, fabsf(p[0] - p[view->width]));
     return largest;
 }
 

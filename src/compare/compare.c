@@ -126,7 +126,7 @@ static lr_status make_map(const compare_pair *pair, lr_compare_result *result, l
         if (!compare_is_used(pair, i))
             result->map[i] = -1;
         else if (!measured)
-            result->map[i] = compare_largest(pair, i);
+            result->map[i] = (float)compare_largest(pair, i);
     return LR_OK;
 }
 

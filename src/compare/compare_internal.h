@@ -39,7 +39,7 @@ double compare_difference(const compare_pair *pair, float reference, float test)
 double compare_relative(const compare_pair *pair, float reference, float test);
 
 /* The largest difference of a pixel's samples. */
-float compare_largest(const compare_pair *pair, size_t pixel);
+double compare_largest(const compare_pair *pair, size_t pixel);
 
 /* Whether the rows hold the same bits. */
 bool compare_same_row(const compare_pair *pair, uint32_t y);

@@ -61,8 +61,12 @@ static void add_pixel(const compare_pair *pair, const lr_compare_options *option
         finite &= !isinf(d);
         double square = d * d, r = reference[c];
         s->square += square;
-        s->relative_square += isinf(d) ? d : square / (r * r + 0.01);
-        largest_relative = fmax(largest_relative, compare_relative(pair, reference[c], test[c]));
+        if (options->wanted[LR_METRIC_RELMSE])
+            s->relative_square += isinf(d) ? d : square / (r * r + 0.01);
+        if (options->wanted[LR_METRIC_REL] || options->wanted[LR_METRIC_MAX_REL]) {
+            double share = compare_relative(pair, reference[c], test[c]);
+            largest_relative = share > largest_relative ? share : largest_relative;
+        }
         if (d > largest)
             largest = d;
         if (d > result->max_difference) {
@@ -78,7 +82,7 @@ static void add_pixel(const compare_pair *pair, const lr_compare_options *option
         note_first(pair, reference, test, x, y, result);
     result->different_pixels++;
     result->non_finite += !finite;
-    s->max_relative = fmax(s->max_relative, largest_relative);
+    s->max_relative = largest_relative > s->max_relative ? largest_relative : s->max_relative;
     s->over_abs += largest > options->limits[LR_METRIC_ABS];
     s->over_rel += largest_relative > options->limits[LR_METRIC_REL];
 }

@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "compare/compare_internal.h"
 
-float compare_largest(const compare_pair *pair, size_t pixel)
+double compare_largest(const compare_pair *pair, size_t pixel)
 {
     const float *reference = pair->reference + pixel * pair->stride;
     const float *test = pair->test + pixel * pair->stride;
@@ -14,7 +14,7 @@ float compare_largest(const compare_pair *pair, size_t pixel)
         double d = compare_difference(pair, reference[c], test[c]);
         largest = d > largest ? d : largest;
     }
-    return (float)largest;
+    return largest;
 }
 
 static double relative_error(const compare_pair *pair, size_t pixel)
@@ -31,7 +31,7 @@ static double relative_error(const compare_pair *pair, size_t pixel)
 /* Whether the pixel breaks one of the limits that are set for single pixels; with none set, whether
  * it differs. */
 static bool is_marked(const compare_pair *pair, const lr_compare_options *options,
-                      const float *flip, size_t pixel)
+                      const float *errors, bool flip, size_t pixel)
 {
     const bool *wanted = options->wanted;
     const double *limits = options->limits;
@@ -39,8 +39,8 @@ static bool is_marked(const compare_pair *pair, const lr_compare_options *option
     if (wanted[LR_METRIC_NOISE]) /* all pixels differ a little: what counts is tested by blocks */
         return false;
     if (wanted[LR_METRIC_EXACT] || (!wanted[LR_METRIC_ABS] && !wanted[LR_METRIC_REL] && !by_flip))
-        return compare_largest(pair, pixel) > 0;
-    if (wanted[LR_METRIC_ABS] && (double)compare_largest(pair, pixel) > limits[LR_METRIC_ABS])
+        return flip ? compare_largest(pair, pixel) > 0 : errors[pixel] > 0;
+    if (wanted[LR_METRIC_ABS] && compare_largest(pair, pixel) > limits[LR_METRIC_ABS])
         return true;
     if (wanted[LR_METRIC_REL] && relative_error(pair, pixel) > limits[LR_METRIC_REL])
         return true;
@@ -49,7 +49,7 @@ static bool is_marked(const compare_pair *pair, const lr_compare_options *option
     double limit = wanted[LR_METRIC_FLIP_P99] ? limits[LR_METRIC_FLIP_P99] : 1;
     if (wanted[LR_METRIC_FLIP_MAX] && limits[LR_METRIC_FLIP_MAX] < limit)
         limit = limits[LR_METRIC_FLIP_MAX];
-    return (double)flip[pixel] > limit;
+    return (double)errors[pixel] > limit;
 }
 
 /* A flood fill's state: pixels wait on the stack with their mark taken away. */
@@ -129,7 +129,7 @@ lr_status compare_regions(const compare_pair *pair, const lr_compare_options *op
 {
     size_t count = (size_t)pair->width * pair->height;
     flood f = {.width = pair->width, .height = pair->height};
-    const float *flip = result->map_name && strcmp(result->map_name, "FLIP") == 0 ? errors : NULL;
+    bool flip = strcmp(result->map_name, "FLIP") == 0;
     f.marks = lr_alloc(count, 1);
     f.stack = lr_alloc(count, sizeof *f.stack);
     lr_status status = LR_OK;
@@ -138,7 +138,7 @@ lr_status compare_regions(const compare_pair *pair, const lr_compare_options *op
         goto done;
     }
     for (size_t i = 0; i < count; i++)
-        f.marks[i] = compare_is_used(pair, i) && is_marked(pair, options, flip, i);
+        f.marks[i] = compare_is_used(pair, i) && is_marked(pair, options, errors, flip, i);
     for (size_t i = 0; i < count; i++)
         if (f.marks[i]) {
             lr_region region = take_region(&f, i, errors);
