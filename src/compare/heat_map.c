@@ -95,11 +95,10 @@ static void draw_errors(const canvas *c, const lr_image *reference, const lr_com
         }
 }
 
-static void draw_frame(const canvas *c, lr_rectangle box)
+static void draw_frame(const canvas *c, lr_rectangle box, int64_t gap)
 {
-    int64_t left = (int64_t)box.x - FRAME_GAP, top = (int64_t)box.y - FRAME_GAP;
-    int64_t right = (int64_t)box.x + box.width - 1 + FRAME_GAP;
-    int64_t bottom = (int64_t)box.y + box.height - 1 + FRAME_GAP;
+    int64_t left = (int64_t)box.x - gap, right = (int64_t)box.x + box.width - 1 + gap;
+    int64_t top = (int64_t)box.y - gap, bottom = (int64_t)box.y + box.height - 1 + gap;
     for (int64_t x = left; x <= right; x++) {
         put(c, x, top, frame_color);
         put(c, x, bottom, frame_color);
@@ -108,6 +107,14 @@ static void draw_frame(const canvas *c, lr_rectangle box)
         put(c, left, y, frame_color);
         put(c, right, y, frame_color);
     }
+}
+
+/* As thick as the letters; many frames would hide more than they show. */
+static void draw_frames(const canvas *c, const lr_compare_result *result)
+{
+    for (uint32_t i = 0; i < result->region_count && result->region_count <= LR_REGIONS_MAX; i++)
+        for (uint32_t line = 0; line < c->zoom; line++)
+            draw_frame(c, result->regions[i].box, FRAME_GAP * c->zoom + line);
 }
 
 static uint32_t text_width(const canvas *c, const char *text)
@@ -176,8 +183,7 @@ lr_status lr_compare_heat_map(const lr_image *reference, const lr_compare_result
             largest = result->map[i];
     double scale = largest > 0 ? round_up((double)largest) : 1;
     draw_errors(&c, reference, result, (float)scale);
-    for (uint32_t i = 0; i < result->region_count && result->region_count <= LR_REGIONS_MAX; i++)
-        draw_frame(&c, result->regions[i].box);
+    draw_frames(&c, result);
     if (has_scale) {
         /* Frames do not reach into the scale. */
         memset(picture->pixels + 3 * count, 0,
