@@ -227,6 +227,22 @@ static int read_inputs(const char *const *paths, lr_image *images, lr_compare_op
     return EXIT_FINE;
 }
 
+/* What goes with the reference has its size; that of the test is compared. */
+static int check_sizes(const char *const *paths, const lr_image *images)
+{
+    const lr_image *reference = &images[REFERENCE];
+    for (int i = MASK; i < INPUTS; i++) {
+        if (!paths[i] ||
+            (images[i].width == reference->width && images[i].height == reference->height))
+            continue;
+        print_error("%s: has %u x %u pixels, but %s has %u x %u; they must be the same", paths[i],
+                    images[i].width, images[i].height, paths[REFERENCE], reference->width,
+                    reference->height);
+        return EXIT_USAGE;
+    }
+    return EXIT_FINE;
+}
+
 /* The errors themselves, in all three channels. */
 static lr_status write_errors(const lr_compare_result *result, const char *path, lr_error *error)
 {
@@ -301,6 +317,9 @@ static int run(const command *self, int argc, char **argv)
     lr_image images[INPUTS] = {0};
     code = read_inputs(paths, images, &to);
     if (code == EXIT_FINE) {
+        code = check_sizes(paths, images);
+    }
+    if (code == EXIT_FINE) {
         code = compare(&v, paths, images, &to);
     }
     for (int i = 0; i < INPUTS; i++) {
@@ -313,12 +332,11 @@ const command command_compare = {
     .name = "compare",
     .operands = "REF TEST",
     .summary = "compare two pictures: how much they differ, where and why",
-    .details =
-        "Compares the picture TEST with the reference REF (PNM, PNG, PFM, EXR, HDR; \"-\"\n"
-        "is standard input) by any set of metrics; all given must be within their\n"
-        "limits. Exit code 0 when they are, 1 when one is not or the sizes differ, 2 when\n"
-        "the command line is wrong, 5 when a picture cannot be read. Errors are of\n"
-        "samples as stored, white being 1; docs/compare.md tells each metric's formula.",
+    .details = "Compares the picture TEST with the reference REF (PNM, PNG, PFM, EXR, HDR; \"-\"\n"
+               "is standard input) by any set of metrics; all given must be within their\n"
+               "limits. Exit code 0 when they are, 1 when one is not or the sizes differ, 2 when\n"
+               "the command line is wrong, 5 when a picture cannot be read. Errors are of\n"
+               "samples as stored, white being 1; docs/compare.md tells each metric's formula.",
     .examples = "  lavaray compare golden.png new.png\n"
                 "  lavaray compare golden.png new.png --abs 2/255 --abs-percent 0.1 --max-abs 0.1\n"
                 "  lavaray compare golden.exr new.exr --flip-mean 0.02 --diff diff.png\n"

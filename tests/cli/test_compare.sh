@@ -49,7 +49,7 @@ for bad in short.ppm missing.ppm .; do
     expect 5 "$lavaray" compare "$a" "$work/$bad" && one_line
     says err "$bad"
 done
-expect 2 "$lavaray" compare "$a" "$b" --mask "$work/small.ppm" && says err 'the mask has 64 x 47 pixels'
+expect 2 "$lavaray" compare "$a" "$b" --mask "$work/small.ppm" && says err 'small\.ppm: has 64 x 47 pixels, but .*a\.ppm has 64 x 48'
 expect 5 "$lavaray" compare "$a" "$b" --mask "$work/missing.ppm"
 
 # JSON.
@@ -113,7 +113,7 @@ expect 1 "$lavaray" compare a1.pfm c1.pfm --noise 0.001 --reference-variance v.p
     --diff z.pfm --json - && says out '"standard_deviations"'
 expect 1 "$lavaray" compare a1.pfm b1.pfm --noise 0.001 --test-variance v.pfm # too little noise
 expect 2 "$lavaray" compare a1.pfm b1.pfm --noise 0.001 --test-variance small.ppm
-says err 'variance has 64 x 47 pixels'
+says err 'small\.ppm: has 64 x 47 pixels'
 cd "$OLDPWD" || exit 1
 
 # Mistakes.
