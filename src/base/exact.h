@@ -6,4 +6,7 @@
 /* log2(x) within 1e-14, for finite x > 0. */
 double lr_log2(double x);
 
+/* 2^x, exact for whole x, with a relative error below 1e-15 for others, |x| <= 1000. */
+double lr_exp2(double x);
+
 #endif

@@ -10,7 +10,7 @@ struct progress;
 
 typedef enum exit_code {
     EXIT_FINE = 0,
-    EXIT_DIFFERENT = 1,    /* a self-test's hash is not the expected one */
+    EXIT_DIFFERENT = 1,    /* pictures, or a self-test's hash, are not as expected */
     EXIT_USAGE = 2,        /* the command line is wrong */
     EXIT_SCENE = 3,        /* the scene is invalid */
     EXIT_DEVICE = 4,       /* no usable device, the device was lost, memory ran out */
@@ -31,7 +31,7 @@ typedef struct command {
 } command;
 
 extern const command command_render, command_devices, command_doctor, command_validate,
-    command_schema;
+    command_schema, command_compare;
 
 /* One line on stderr, with "lavaray: " in front. */
 void print_error(const char *format, ...) __attribute__((format(printf, 1, 2)));

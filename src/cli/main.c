@@ -13,7 +13,8 @@
 #include <unistd.h>
 
 static const command *const commands[] = {&command_render, &command_devices, &command_doctor,
-                                          &command_validate, &command_schema};
+                                          &command_validate, &command_schema,
+                                          &command_compare};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 bool terminal_present(void)

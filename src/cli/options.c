@@ -132,6 +132,15 @@ static bool parse_integers(const char *text, const char *separators, unsigned co
     return true;
 }
 
+bool parse_rectangle(const char *text, int64_t max, option_rectangle *rectangle)
+{
+    int64_t low[4] = {0, 0, 1, 1};
+    uint32_t v[4] = {0};
+    bool good = parse_integers(text, ",,,", 4, low, max, v);
+    *rectangle = (option_rectangle){v[0], v[1], v[2], v[3]};
+    return good;
+}
+
 static parse_result store_value(const command *self, const option *o, const char *text,
                                 void *values)
 {
@@ -148,6 +157,16 @@ static parse_result store_value(const command *self, const option *o, const char
         good = *text != '\0';
         snprintf(expected, sizeof expected, "a text that is not empty");
         break;
+    case OPTION_REPEATED: {
+        option_texts *texts = (option_texts *)target;
+        good = *text != '\0' && texts->count < OPTION_REPEATED_MAX;
+        if (good) {
+            texts->items[texts->count++] = text;
+        }
+        snprintf(expected, sizeof expected, "a text that is not empty, at most %d times",
+                 OPTION_REPEATED_MAX);
+        break;
+    }
     case OPTION_CHOICE:
         *(const char **)target = text;
         good = in_list(o->choices, text, strlen(text)) && *text != '\0';
@@ -177,15 +196,11 @@ static parse_result store_value(const command *self, const option *o, const char
                  min, max);
         break;
     }
-    case OPTION_RECTANGLE: {
-        int64_t low[4] = {0, 0, o->min, o->min};
-        uint32_t v[4] = {0};
-        good = parse_integers(text, ",,,", 4, low, o->max, v);
-        *(option_rectangle *)target = (option_rectangle){v[0], v[1], v[2], v[3]};
+    case OPTION_RECTANGLE:
+        good = parse_rectangle(text, o->max, (option_rectangle *)target);
         snprintf(expected, sizeof expected,
                  "%s in pixels such as 10,20,64,48, sizes from %lld to %lld", o->value, min, max);
         break;
-    }
     }
     if (!good) {
         print_error("--%s must be %s, not '%.100s'; see lavaray %s --help", o->name, expected, text,
@@ -220,11 +235,17 @@ static const option *find_option(const command *self, const char *argument, cons
 
 static parse_result check_operands(const command *self, int count, char **operands)
 {
-    if (count < self->min_operands) {
+    if (count < self->min_operands && self->min_operands == 1) {
         return usage_error(self, "no scene given", "", "");
+    }
+    if (count < self->min_operands) {
+        return usage_error(self, "expected ", self->operands, "");
     }
     if (self->max_operands == 0 && count > 0) {
         return usage_error(self, "unexpected '", operands[0], "'");
+    }
+    if (count > self->max_operands && self->max_operands > 1) {
+        return usage_error(self, "'", operands[self->max_operands], "' is one too many");
     }
     if (count > self->max_operands) {
         return usage_error(self, "one scene at a time, '", operands[self->max_operands],
@@ -260,7 +281,7 @@ parse_result options_parse(const command *self, int argc, char **argv, void *val
             return unknown_option(self, argument, argument[1] == '-' ? length : strlen(argument));
         }
         uint64_t bit = UINT64_C(1) << (o - self->options);
-        if (seen & bit) {
+        if (seen & bit && o->kind != OPTION_REPEATED) {
             return usage_error(self, "--", o->name, " is given twice");
         }
         seen |= bit;

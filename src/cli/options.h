@@ -17,6 +17,7 @@ typedef enum option_kind {
     OPTION_SIZE,      /* option_size, each within min..max: 640x480 */
     OPTION_RECTANGLE, /* option_rectangle, each within min..max: 10,20,64,48 */
     OPTION_CHOICE,    /* const char *, one of choices */
+    OPTION_REPEATED,  /* option_texts: a text, any number of times up to OPTION_REPEATED_MAX */
 } option_kind;
 
 typedef struct option_size {
@@ -26,6 +27,13 @@ typedef struct option_size {
 typedef struct option_rectangle {
     uint32_t x, y, width, height;
 } option_rectangle;
+
+enum { OPTION_REPEATED_MAX = 64 };
+
+typedef struct option_texts {
+    const char *items[OPTION_REPEATED_MAX];
+    unsigned count;
+} option_texts;
 
 typedef struct option {
     const char *name; /* without the dashes */
@@ -49,6 +57,9 @@ parse_result options_parse(const struct command *self, int argc, char **argv, vo
                            int *operand_count);
 
 void options_print_help(const struct command *self);
+
+/* "X,Y,W,H", each size at least 1, everything at most max. */
+bool parse_rectangle(const char *text, int64_t max, option_rectangle *rectangle);
 
 /* The name that is nearest to a mistyped one, NULL when none is near. best starts as NULL and
  * *distance as UINT_MAX; call it for each candidate and pass its result on. */

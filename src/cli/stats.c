@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/json.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -154,25 +155,5 @@ static json_t *record_json(const render_record *r)
 
 int write_record(const render_record *r, const char *path)
 {
-    json_t *json = record_json(r);
-    char *dumped = json ? json_dumps(json, JSON_INDENT(2)) : NULL;
-    size_t length = dumped ? strlen(dumped) : 0;
-    char *text = dumped ? realloc(dumped, length + 2) : NULL;
-    json_decref(json);
-    if (!text) {
-        free(dumped);
-        print_error("cannot express the statistics as JSON");
-        return EXIT_DEVICE;
-    }
-    memcpy(text + length, "\n", 2);
-    int code = EXIT_FINE;
-    if (strcmp(path, "-") == 0) {
-        fputs(text, stdout); /* main checks standard output at the end */
-    } else {
-        lr_error error = {0};
-        lr_status status = lr_file_write(path, text, strlen(text), &error);
-        code = status == LR_OK ? EXIT_FINE : report_failure(&error);
-    }
-    free(text);
-    return code;
+    return write_json(record_json(r), path);
 }

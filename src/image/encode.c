@@ -4,29 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/exact.h"
 #include "base/memory.h"
 
 #define EXPOSURE_LIMIT 200.0f /* stops; float32 spans 277 */
-
-double image_exp2(double stops)
-{
-    int whole = (int)stops;
-    whole -= whole > stops;
-    double x = stops - whole; /* 0 <= x < 1 */
-    if (x >= 0.5) {
-        whole++;
-        x -= 1;
-    }
-    x *= 0.69314718055994530942;
-    /* The exponential series for |x| <= 0.35; the next term is below 1e-18. */
-    double sum = 1;
-    for (int i = 13; i >= 1; i--)
-        sum = 1 + sum * x / i;
-    uint64_t bits = (uint64_t)(1023 + whole) << 52;
-    double power;
-    memcpy(&power, &bits, sizeof power);
-    return power * sum;
-}
 
 float image_exposed(const image_encoder *encoder, float value)
 {
@@ -172,7 +153,7 @@ lr_status lr_picture_encode(const lr_picture *picture, const lr_encoding *encodi
     image_encoder encoder = {
         .picture = picture,
         .encoding = encoding,
-        .scale = image_exp2(encoding->exposure),
+        .scale = lr_exp2(encoding->exposure),
         .sample_size = maxval < 256 ? 1 : 2,
     };
     if (encoding->format == LR_FORMAT_PFM)

@@ -14,9 +14,6 @@ typedef struct image_encoder {
         sample_size; /* bytes: 1, or 2 with the most significant first, as PPM and PNG have it */
 } image_encoder;
 
-/* 2^stops, |stops| <= 1000: exact for whole stops and the same on every machine for others. */
-double image_exp2(double stops);
-
 /* Writes one row of 3 * width samples. */
 void image_encode_row(const image_encoder *encoder, uint32_t row, unsigned char *out);
 

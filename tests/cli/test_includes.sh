@@ -15,9 +15,10 @@ may_include() {
     bvh) echo bvh base ;;
     gpu) echo gpu base ;;
     image) echo image base ;;
+    compare) echo compare image base ;;
     render) echo render scene bvh gpu image base ;;
     preview) echo preview render scene bvh gpu image base ;;
-    cli) echo cli preview render scene bvh gpu image base ;;
+    cli) echo cli preview render scene bvh gpu compare image base ;;
     esac
 }
 

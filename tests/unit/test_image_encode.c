@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "base/file.h"
+#include "base/exact.h"
 #include "image/image_internal.h"
 
 static char folder[64];
@@ -110,7 +111,7 @@ static void test_exp2(void **state)
 {
     (void)state;
     for (int i = -20000; i <= 20000; i += 7) {
-        double stops = i / 100.0, power = image_exp2(stops);
+        double stops = i / 100.0, power = lr_exp2(stops);
         assert_true(fabsl(power / exp2l((long double)stops) - 1) < 4e-16L);
     }
 }
