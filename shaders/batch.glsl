@@ -67,6 +67,16 @@ uint batch_sum(uint x)
     return x;
 }
 
+uint batch_max(uint x)
+{
+    if (has_shuffle) {
+        x = max(x, neighbour(x, 1u));
+        x = max(x, neighbour(x, 2u));
+        x = max(x, neighbour(x, 4u));
+    }
+    return x;
+}
+
 // The sum over the batch's earlier invocations. Each step doubles the aligned run of lanes that is
 // summed up: the upper half of a run adds the sum of its lower half.
 uint batch_sum_before(uint x)

@@ -18,10 +18,10 @@
 
 layout(local_size_x = LR_GROUP_SIZE) in;
 
-// What is left of each channel behind ray l's obstacles.
-vec3 left_by(shadow_rays rays, uint l)
+// What is left of each channel behind ray i's obstacles.
+vec3 left_by(shadow_rays rays, uint i)
 {
-    uvec3 depth = uvec3(pick(rays.red, l), pick(rays.green, l), pick(rays.blue, l));
+    uvec3 depth = uvec3(pick(rays.red, i), pick(rays.green, i), pick(rays.blue, i));
     bvec3 dark = equal(depth, uvec3(LR_SHADOW_OPAQUE));
     vec3 left = vec3(1.0);
     if (has_transparent) {
@@ -36,11 +36,9 @@ void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m,
                 vec3 wo, bool lit, inout film_sum sum)
 {
     vec3 origin = s.position + n * s.offset;
-    shadow_rays rays;
+    shadow_rays rays = shadow_rays_none();
     vec4 red = vec4(0.0), green = vec4(0.0), blue = vec4(0.0);
-    rays.x = rays.y = rays.z = rays.t_max = vec4(0.0);
-    uvec4 wanted = uvec4(0u);
-    uint ray_count = 0u;
+    uint shadowed = 0u;
     gpu_light held;
     if (has_shuffle)
         held = load_light(first + min(batch_lane(), count - 1u));
@@ -52,33 +50,29 @@ void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m,
             light = load_light(first + l);
         arriving_light arriving = sample_light(light, s.position);
         vec3 value = weight * (arriving.color * classic_light(m, color, n, wo, arriving.wi));
-        bool reaches = lit && (value.x > 0.0 || value.y > 0.0 || value.z > 0.0);
-        red = replaced(red, l, reaches ? value.x : 0.0);
-        green = replaced(green, l, reaches ? value.y : 0.0);
-        blue = replaced(blue, l, reaches ? value.z : 0.0);
-        vec4 ray = shadow_ray(light, origin);
-        rays.x = replaced(rays.x, l, ray.x);
-        rays.y = replaced(rays.y, l, ray.y);
-        rays.z = replaced(rays.z, l, ray.z);
-        rays.t_max = replaced(rays.t_max, l, ray.w);
-        bool shadowed = reaches && (light.flags & LR_GPU_LIGHT_SHADOWS) != 0u;
-        wanted = replaced(wanted, l, shadowed ? 1u : 0u);
-        ray_count += shadowed ? 1u : 0u;
+        if (lit && (value.x > 0.0 || value.y > 0.0 || value.z > 0.0)) {
+            red = replaced(red, rays.count, value.x);
+            green = replaced(green, rays.count, value.y);
+            blue = replaced(blue, rays.count, value.z);
+            bool shadows = (light.flags & LR_GPU_LIGHT_SHADOWS) != 0u;
+            add_ray(rays, shadow_ray(light, origin), shadows);
+            shadowed += shadows ? 1u : 0u;
+        }
         l++;
         if (l >= count)
             break;
     }
-    rays.wanted = equal(wanted, uvec4(1u));
-    trace_shadows(rays, origin, count);
+    uint most = batch_max(rays.count);
+    trace_shadows(rays, origin, most);
     uvec4 met = rays.red | rays.green | rays.blue;
-    uint hit_count = uint(met.x != 0u) + uint(met.y != 0u) + uint(met.z != 0u) + uint(met.w != 0u);
-    COUNT(counters.shadow, ray_count)
-    COUNT(counters.shadow_hits, hit_count)
-    for (uint l = 0u;;) {
-        vec3 value = vec3(pick(red, l), pick(green, l), pick(blue, l));
-        film_accumulate(sum, value * left_by(rays, l));
-        l++;
-        if (l >= count)
+    COUNT(counters.shadow, shadowed)
+    COUNT(counters.shadow_hits,
+          uint(met.x != 0u) + uint(met.y != 0u) + uint(met.z != 0u) + uint(met.w != 0u))
+    for (uint i = 0u;;) {
+        vec3 value = vec3(pick(red, i), pick(green, i), pick(blue, i));
+        film_accumulate(sum, value * left_by(rays, i));
+        i++;
+        if (i >= most)
             break;
     }
 }

@@ -6,15 +6,22 @@
 #include "candidates.glsl"
 #include "intersect.glsl"
 
-// The rays from one point towards four lights, one a component.
+// The rays from one point towards up to four lights, one a component.
 struct shadow_rays {
-    vec4 x, y, z; // unit directions
-    vec4 t_max;   // a little short of the light
-    bvec4 wanted;
+    uint count;
+    vec4 x, y, z;   // unit directions
+    vec4 t_max;     // a little short of the light
+    uvec4 shadowed; // 1: what stands in the way counts
     // The optical depth of what stands in the way, by channel: -log2 of what is left of the light in
     // LR_SHADOW_UNIT; LR_SHADOW_OPAQUE when nothing is. In integers, so that no order matters.
     uvec4 red, green, blue;
 };
+
+shadow_rays shadow_rays_none()
+{
+    return shadow_rays(0u, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), uvec4(0u), uvec4(0u),
+                       uvec4(0u), uvec4(0u));
+}
 
 float pick(vec4 v, uint i)
 {
@@ -34,6 +41,16 @@ uvec4 replaced(uvec4 v, uint i, uint by)
 vec4 replaced(vec4 v, uint i, float by)
 {
     return vec4(i == 0u ? by : v.x, i == 1u ? by : v.y, i == 2u ? by : v.z, i == 3u ? by : v.w);
+}
+
+void add_ray(inout shadow_rays rays, vec4 ray, bool shadowed)
+{
+    rays.x = replaced(rays.x, rays.count, ray.x);
+    rays.y = replaced(rays.y, rays.count, ray.y);
+    rays.z = replaced(rays.z, rays.count, ray.z);
+    rays.t_max = replaced(rays.t_max, rays.count, ray.w);
+    rays.shadowed = replaced(rays.shadowed, rays.count, shadowed ? 1u : 0u);
+    rays.count++;
 }
 
 bool crosses(vec2 crossing, float t_max)
@@ -116,9 +133,9 @@ bool dim_solid(inout shadow_rays rays, uint l, uint i, vec3 o, vec3 d, float t_m
             }                                                                                      \
     }
 
-void trace_shadows(inout shadow_rays rays, vec3 o, uint ray_count)
+// `most` is the greatest number of rays that an invocation of the batch has.
+void trace_shadows(inout shadow_rays rays, vec3 o, uint most)
 {
-    rays.red = rays.green = rays.blue = uvec4(0u);
     if (has_planes)
         for (uint first = frame.planes.begin;;) {
             uvec4 bits = uvec4(0u);
@@ -128,10 +145,10 @@ void trace_shadows(inout shadow_rays rays, vec3 o, uint ray_count)
                 vec2 crossing = intersect_plane(o, d, p.normal, p.offset);
                 bits = replaced(bits, l, crosses(crossing, pick(rays.t_max, l)) ? 1u : 0u);
                 l++;
-                if (l >= ray_count)
+                if (l >= most)
                     break;
             }
-            bits = bits * uvec4(rays.wanted);
+            bits = bits * rays.shadowed;
             if (has_transparent_planes) {
                 FOR_EACH_PAIR(1u, dim_plane(rays, l, i, o, d, t_max))
             } else if ((p.flags & LR_FLAG_SHADOW) != 0u) {
@@ -154,14 +171,14 @@ void trace_shadows(inout shadow_rays rays, vec3 o, uint ray_count)
                     uint found = batch_candidates(held, o, d) << (at & 31u);
                     bits = replaced(bits, l, pick(bits, l) | found);
                     l++;
-                    if (l >= ray_count)
+                    if (l >= most)
                         break;
                 }
                 at += batch_size();
                 if (at >= 32u || first + at >= stop)
                     break;
             }
-            bits = bits * uvec4(rays.wanted) & bits_before(stop, first);
+            bits = bits * rays.shadowed & bits_before(stop, first);
             if (has_spheres)
                 FOR_EACH_PAIR(bits_of(frame.spheres, first), dim_sphere(rays, l, i, o, d, t_max))
             if (has_flats)
