@@ -99,16 +99,25 @@ void lr_picture_free(lr_picture *picture);
 void lr_picture_hash(const lr_picture *picture, char hash[65]);
 
 typedef enum lr_transfer { LR_TRANSFER_SRGB, LR_TRANSFER_LINEAR } lr_transfer;
-typedef enum lr_format { LR_FORMAT_PPM, LR_FORMAT_PNG, LR_FORMAT_PFM } lr_format;
+typedef enum lr_format { LR_FORMAT_PPM, LR_FORMAT_PNG, LR_FORMAT_PFM, LR_FORMAT_EXR } lr_format;
+
+/* What a picture file says beside its pixels. Keys have 1 to 31 printable ASCII characters without
+ * spaces, and are none of EXR's own attributes. */
+typedef struct lr_text {
+    const char *key, *value;
+} lr_text;
 
 typedef struct lr_encoding {
     lr_format format;
-    uint32_t maxval;      /* PPM: 1..65535, PNG: 255 or 65535; 0 means 255. PFM has none. */
-    lr_transfer transfer; /* PFM is always linear */
+    uint32_t maxval; /* PPM: 1..65535, PNG: 255 or 65535; 0 means 255. PFM and EXR have none. */
+    lr_transfer transfer; /* PFM and EXR are always linear */
     float exposure;       /* in stops; the pixels are multiplied by 2^exposure */
+    bool half;            /* EXR: 16-bit floats, those above 65504 become 65504; otherwise 32-bit */
+    const lr_text *texts; /* PNG: text chunks, EXR: string attributes; PPM and PFM carry none */
+    uint32_t text_count;
 } lr_encoding;
 
-/* The format that a path's ending names (.ppm .png .pfm), false when it names none. */
+/* The format that a path's ending names (.ppm .png .pfm .exr), false when it names none. */
 bool lr_format_from_path(const char *path, lr_format *format);
 
 /* Writes the picture to path, or to standard output when path is "-". A regular file is replaced

@@ -10,13 +10,13 @@
 #include <unistd.h>
 
 typedef struct values {
-    const char *output, *transfer, *camera, *device, *stats;
+    const char *output, *format, *transfer, *camera, *device, *stats;
     option_size size;
     int64_t samples, depth, seed, maxval; /* -1: not given */
     double exposure;                      /* NaN: not given */
     option_rectangle crop;
     int64_t tile, chunk;
-    bool storage_loads, quiet, verbose;
+    bool half, storage_loads, quiet, verbose;
 } values;
 
 #define AT(member) .offset = offsetof(values, member)
@@ -27,9 +27,17 @@ static const option options[] = {
      .kind = OPTION_TEXT,
      AT(output),
      .value = "FILE",
-     .help = "the picture, in the format of its ending: .ppm, .png\n"
-             "or .pfm (linear floats); \"-\" is PPM to standard output",
+     .help = "the picture, in the format of its ending: .ppm, .png,\n"
+             ".pfm or .exr (linear floats); \"-\" is standard output",
      .also = "out|file"},
+    {.name = "format",
+     .kind = OPTION_CHOICE,
+     AT(format),
+     .value = "FORMAT",
+     .choices = "ppm|png|pfm|exr",
+     .help = "ppm, png, pfm or exr, whatever the name ends in;\n"
+             "default for standard output: ppm",
+     .also = "type"},
     {.name = "size",
      .kind = OPTION_SIZE,
      AT(size),
@@ -74,8 +82,13 @@ static const option options[] = {
      AT(transfer),
      .value = "CURVE",
      .choices = "srgb|linear",
-     .help = "srgb (default) or linear; PFM is always linear",
+     .help = "srgb (default) or linear; PFM and EXR are linear",
      .also = "gamma"},
+    {.name = "half",
+     .kind = OPTION_FLAG,
+     AT(half),
+     .help = "16-bit floats in EXR; default: 32 bits, exact",
+     .also = "float|exr"},
     {.name = "exposure",
      .kind = OPTION_REAL,
      AT(exposure),
@@ -149,17 +162,28 @@ static int wrong_usage(const command *self, const char *text)
     return EXIT_USAGE;
 }
 
+static lr_format format_named(const char *name)
+{
+    char path[16];
+    lr_format format = LR_FORMAT_PPM;
+    snprintf(path, sizeof path, ".%s", name);
+    lr_format_from_path(path, &format);
+    return format;
+}
+
 /* What the flags mean together, and whether the files can be written. */
 static int check_values(const command *self, const values *v, const char *scene,
                         lr_encoding *encoding)
 {
     if (!v->output) {
-        return wrong_usage(self, "where to? Give -o FILE.png, .ppm or .pfm");
+        return wrong_usage(self, "where to? Give -o FILE.png, .ppm, .pfm or .exr");
     }
     bool to_stdout = strcmp(v->output, "-") == 0;
     encoding->format = LR_FORMAT_PPM;
-    if (!to_stdout && !lr_format_from_path(v->output, &encoding->format)) {
-        print_error("%s: the name must end in .ppm, .png or .pfm; see lavaray render --help",
+    if (v->format) {
+        encoding->format = format_named(v->format);
+    } else if (!to_stdout && !lr_format_from_path(v->output, &encoding->format)) {
+        print_error("%s: the name must end in .ppm, .png, .pfm or .exr; see lavaray render --help",
                     v->output);
         return EXIT_USAGE;
     }
@@ -172,11 +196,15 @@ static int check_values(const command *self, const values *v, const char *scene,
     if (v->quiet && v->verbose) {
         return wrong_usage(self, "-q and -v contradict each other");
     }
-    if (encoding->format == LR_FORMAT_PFM && v->maxval >= 0) {
-        return wrong_usage(self, "--maxval means nothing for PFM, which holds floats");
+    bool floats = encoding->format == LR_FORMAT_PFM || encoding->format == LR_FORMAT_EXR;
+    if (floats && v->maxval >= 0) {
+        return wrong_usage(self, "--maxval means nothing for PFM and EXR, which hold floats");
     }
-    if (encoding->format == LR_FORMAT_PFM && v->transfer && strcmp(v->transfer, "srgb") == 0) {
-        return wrong_usage(self, "--transfer srgb is not for PFM, which is always linear");
+    if (floats && v->transfer && strcmp(v->transfer, "srgb") == 0) {
+        return wrong_usage(self, "--transfer srgb is not for PFM and EXR, which are always linear");
+    }
+    if (v->half && encoding->format != LR_FORMAT_EXR) {
+        return wrong_usage(self, "--half is for EXR alone");
     }
     if (encoding->format == LR_FORMAT_PNG && v->maxval >= 0 && v->maxval != 255 &&
         v->maxval != 65535) {
@@ -307,6 +335,7 @@ static int run(const command *self, int argc, char **argv)
     encoding.maxval = v.maxval >= 0 ? (uint32_t)v.maxval : 0;
     encoding.transfer =
         v.transfer && strcmp(v.transfer, "linear") == 0 ? LR_TRANSFER_LINEAR : LR_TRANSFER_SRGB;
+    encoding.half = v.half;
 
     progress_phase(&p, "opening device");
     double device_start = seconds_now();
@@ -336,7 +365,7 @@ const command command_render = {
                "picture depends on the scene and the flags alone, not on the device. Nothing is\n"
                "written when the render fails or is interrupted.",
     .examples = "  lavaray render scenes/showcase.yaml -o showcase.png\n"
-                "  lavaray render room.yaml -o room.pfm --size 1920x1080 --spp 64 --device gpu\n"
+                "  lavaray render room.yaml -o room.exr --size 1920x1080 --spp 64 --device gpu\n"
                 "  lavaray render room.yaml -o - | pnmtopng > room.png",
     .options = options,
     .option_count = sizeof options / sizeof *options,

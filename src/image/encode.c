@@ -9,9 +9,31 @@
 
 #define EXPOSURE_LIMIT 200.0f /* stops; float32 spans 277 */
 
-static float exposed(const image_encoder *encoder, float value)
+float image_exposed(const image_encoder *encoder, float value)
 {
     return encoder->scale == 1 ? value : (float)(value * encoder->scale);
+}
+
+bool image_buffer_write(image_buffer *buffer, size_t offset, const void *bytes, size_t size)
+{
+    if (size > SIZE_MAX - offset)
+        return false;
+    size_t end = offset + size;
+    if (end > buffer->capacity) {
+        size_t capacity = buffer->capacity ? buffer->capacity : 65536;
+        while (capacity < end && capacity <= SIZE_MAX / 2)
+            capacity *= 2;
+        unsigned char *grown = capacity < end ? NULL : realloc(buffer->bytes, capacity);
+        if (!grown)
+            return false;
+        buffer->bytes = grown;
+        buffer->capacity = capacity;
+    }
+    if (offset > buffer->size)
+        memset(buffer->bytes + buffer->size, 0, offset - buffer->size);
+    memcpy(buffer->bytes + offset, bytes, size);
+    buffer->size = end > buffer->size ? end : buffer->size;
+    return true;
 }
 
 void image_encode_row(const image_encoder *encoder, uint32_t row, unsigned char *out)
@@ -19,7 +41,7 @@ void image_encode_row(const image_encoder *encoder, uint32_t row, unsigned char 
     size_t count = 3 * (size_t)encoder->picture->width;
     const float *in = encoder->picture->pixels + row * count;
     for (size_t i = 0; i < count; i++) {
-        uint32_t value = lr_curve_encode(&encoder->curve, exposed(encoder, in[i]));
+        uint32_t value = lr_curve_encode(&encoder->curve, image_exposed(encoder, in[i]));
         if (encoder->sample_size == 2)
             *out++ = (unsigned char)(value >> 8);
         *out++ = (unsigned char)value;
@@ -75,13 +97,23 @@ static lr_status encode_pfm(const image_encoder *encoder, unsigned char **bytes,
     size_t count = 3 * (size_t)encoder->picture->width;
     for (uint32_t y = encoder->picture->height; y-- > 0;)
         for (size_t i = 0; i < count; i++) {
-            float value = exposed(encoder, encoder->picture->pixels[y * count + i]);
+            float value = image_exposed(encoder, encoder->picture->pixels[y * count + i]);
             uint32_t bits;
             memcpy(&bits, &value, sizeof bits);
             for (int shift = 0; shift < 32; shift += 8)
                 *out++ = (unsigned char)(bits >> shift);
         }
     return LR_OK;
+}
+
+/* A name that PNG and EXR both take. */
+static bool is_key(const char *key)
+{
+    size_t length = strlen(key);
+    for (size_t i = 0; i < length; i++)
+        if (key[i] <= ' ' || key[i] > '~')
+            return false;
+    return length >= 1 && length <= 31;
 }
 
 static lr_status check(const lr_picture *picture, const lr_encoding *encoding, uint32_t maxval,
@@ -96,6 +128,12 @@ static lr_status check(const lr_picture *picture, const lr_encoding *encoding, u
     if (!(encoding->exposure >= -EXPOSURE_LIMIT && encoding->exposure <= EXPOSURE_LIMIT))
         return lr_fail(error, LR_ERROR_ARGUMENT, "exposure is %g stops; expected -%g to %g",
                        (double)encoding->exposure, (double)EXPOSURE_LIMIT, (double)EXPOSURE_LIMIT);
+    for (uint32_t i = 0; i < encoding->text_count; i++)
+        if (!is_key(encoding->texts[i].key))
+            return lr_fail(
+                error, LR_ERROR_ARGUMENT,
+                "the key '%s' of a text is not 1 to 31 printable ASCII characters without spaces",
+                encoding->texts[i].key);
     if (encoding->format == LR_FORMAT_PNG && maxval != 255 && maxval != 65535)
         return lr_fail(error, LR_ERROR_ARGUMENT,
                        "maxval is %u, but PNG samples have 8 or 16 bits; expected 255 or 65535",
@@ -114,12 +152,14 @@ lr_status lr_picture_encode(const lr_picture *picture, const lr_encoding *encodi
         return status;
     image_encoder encoder = {
         .picture = picture,
-        .transfer = encoding->transfer,
+        .encoding = encoding,
         .scale = lr_exp2(encoding->exposure),
         .sample_size = maxval < 256 ? 1 : 2,
     };
     if (encoding->format == LR_FORMAT_PFM)
         return encode_pfm(&encoder, bytes, size, error);
+    if (encoding->format == LR_FORMAT_EXR)
+        return image_encode_exr(&encoder, bytes, size, error);
     status = lr_curve_create(&encoder.curve, encoding->transfer, maxval, error);
     if (status != LR_OK)
         return status;

@@ -1,4 +1,5 @@
-/* Pictures in memory to bytes in files: transfer curves and the PPM, PNG and PFM writers. The
+/* Pictures in memory to bytes in files: transfer curves and the PPM, PNG, PFM and EXR
+ * writers. The
  * public half (lr_picture, lr_encoding, lr_picture_write, lr_picture_hash) is in lavaray.h. */
 #ifndef LR_IMAGE_IMAGE_H
 #define LR_IMAGE_IMAGE_H

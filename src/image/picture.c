@@ -70,6 +70,7 @@ bool lr_format_from_path(const char *path, lr_format *format)
         {".ppm", LR_FORMAT_PPM},
         {".png", LR_FORMAT_PNG},
         {".pfm", LR_FORMAT_PFM},
+        {".exr", LR_FORMAT_EXR},
     };
     for (size_t i = 0; i < sizeof table / sizeof *table; i++)
         if (ends_with(path, table[i].ending)) {

@@ -10,8 +10,7 @@ typedef struct png_output {
     png_structp png;
     png_infop info;
     unsigned char *row;
-    unsigned char *bytes;
-    size_t size, capacity;
+    image_buffer file;
     char reason[128];
 } png_output;
 
@@ -32,26 +31,27 @@ static void on_warning(png_structp png, png_const_charp message)
 static void on_data(png_structp png, png_bytep data, size_t size)
 {
     png_output *output = png_get_io_ptr(png);
-    if (size > output->capacity - output->size) {
-        size_t capacity = output->capacity ? output->capacity : 65536;
-        while (capacity - output->size < size) {
-            if (capacity > SIZE_MAX / 2)
-                png_error(png, "out of memory");
-            capacity *= 2;
-        }
-        unsigned char *grown = realloc(output->bytes, capacity);
-        if (!grown)
-            png_error(png, "out of memory");
-        output->bytes = grown;
-        output->capacity = capacity;
-    }
-    memcpy(output->bytes + output->size, data, size);
-    output->size += size;
+    if (!image_buffer_write(&output->file, output->file.size, data, size))
+        png_error(png, "out of memory");
 }
 
 static void on_flush(png_structp png)
 {
     (void)png;
+}
+
+/* tEXt is Latin-1, so what is not ASCII goes into iTXt. */
+static void add_text(png_output *output, const lr_text *text)
+{
+    bool ascii = true;
+    for (const char *c = text->value; *c; c++)
+        ascii = ascii && (unsigned char)*c < 128;
+    png_text chunk = {
+        .compression = ascii ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE,
+        .key = (char *)text->key,
+        .text = (char *)text->value,
+    };
+    png_set_text(output->png, output->info, &chunk, 1);
 }
 
 static bool encode(png_output *output)
@@ -65,12 +65,14 @@ static bool encode(png_output *output)
     png_set_IHDR(output->png, output->info, picture->width, picture->height,
                  (int)encoder->sample_size * 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    if (encoder->transfer == LR_TRANSFER_SRGB) {
+    if (encoder->encoding->transfer == LR_TRANSFER_SRGB) {
         png_set_sRGB(output->png, output->info, PNG_sRGB_INTENT_PERCEPTUAL);
         png_set_gAMA_fixed(output->png, output->info, 45455);
     } else {
         png_set_gAMA_fixed(output->png, output->info, 100000);
     }
+    for (uint32_t i = 0; i < encoder->encoding->text_count; i++)
+        add_text(output, &encoder->encoding->texts[i]);
     png_write_info(output->png, output->info);
     for (uint32_t y = 0; y < picture->height; y++) {
         image_encode_row(encoder, y, output->row);
@@ -95,11 +97,11 @@ lr_status image_encode_png(const image_encoder *encoder, unsigned char **bytes, 
     png_destroy_write_struct(&output.png, &output.info);
     free(output.row);
     if (done) {
-        *bytes = output.bytes;
-        *size = output.size;
+        *bytes = output.file.bytes;
+        *size = output.file.size;
         return LR_OK;
     }
-    free(output.bytes);
+    free(output.file.bytes);
     return lr_fail(error, LR_ERROR_MEMORY, "a PNG of %u x %u pixels cannot be made: %s",
                    picture->width, picture->height, output.reason);
 }

@@ -8,7 +8,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 
-#define FILE_LIMIT ((size_t)1 << 32) /* bytes */
+#define FILE_LIMIT ((size_t)1 << 31) /* bytes; as many samples as there may be fit as text */
 
 /* Of a name in a message, so that a long one leaves room for the reason. */
 #define SHOWN "%.500s"

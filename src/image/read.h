@@ -5,9 +5,9 @@
 
 #include "base/status.h"
 
-enum {
-    LR_IMAGE_MAX_SAMPLES = 1 << 28, /* of one picture; more are refused */
-};
+#ifndef LR_IMAGE_MAX_SAMPLES
+#define LR_IMAGE_MAX_SAMPLES (1 << 28) /* of one picture; more are refused */
+#endif
 
 /* A key and a value that the file carries beside its pixels, in the bytes that it has there. */
 typedef struct lr_image_text {
@@ -30,7 +30,7 @@ typedef struct lr_image {
  *   PNM  P1 to P6, any maxval; the first picture of several. Bitmaps have maxval 1, 1 is white.
  *   PNG  all kinds; palettes become RGB and transparent colours alpha. Greys of 1, 2 and 4 bits
  *        have maxval 1, 3 and 15; gAMA and sRGB change nothing.
- *   PFM  PF and Pf, times the absolute value of the scale.
+ *   PFM  PF and Pf; of the scale only the sign matters.
  *   EXR  the first part, flat, without B44 and DWA: R G B A or Y A, else those of the first layer
  *        that has some. The picture is the display window, 0 where there are no data.
  *   HDR  RGBE with rows from top to bottom; EXPOSURE is not applied.

@@ -44,6 +44,15 @@ static int64_t on_read(exr_const_context_t context, void *user, void *buffer, ui
     return (int64_t)count;
 }
 
+/* A size that bounds what the library allocates for the header, and leaves room for its reads to
+ * run into the end of the file: that tells truncated files from corrupt ones. */
+static int64_t on_size(exr_const_context_t context, void *user)
+{
+    (void)context;
+    const exr_input *exr = user;
+    return (int64_t)exr->file->size * 4 + (16 << 20);
+}
+
 /* Zeroed, so that what a corrupt file leaves unset is the same every time. */
 static void *allocate(size_t size)
 {
@@ -117,7 +126,7 @@ static lr_status choose_channels(exr_input *exr, uint32_t *count)
     }
     if (*count == 0)
         return refuse(exr, "has no channels that make a picture: neither R, G and B nor Y");
-    if (find_channel(list, "", 0, "RY") >= 0)
+    if (*count < 3 && find_channel(list, "", 0, "RY") >= 0)
         return refuse(exr, "holds luminance and chroma; convert it to R, G and B");
     for (uint32_t i = 0; i < *count; i++) {
         const exr_attr_chlist_entry_t *entry = &list->entries[exr->channels[i]];
@@ -146,7 +155,8 @@ static lr_status keep_texts(const exr_input *exr)
         const exr_attribute_t *attribute;
         if (exr_get_attribute_by_index(exr->context, 0, EXR_ATTR_LIST_FILE_ORDER, i, &attribute) !=
                 EXR_ERR_SUCCESS ||
-            attribute->type != EXR_ATTR_STRING || !attribute->string->str)
+            attribute->type != EXR_ATTR_STRING || !attribute->string->str ||
+            strcmp(attribute->name, "type") == 0) /* how the pixels are stored */
             continue;
         lr_status status =
             image_add_text(exr->file, exr->image, attribute->name, strlen(attribute->name),
@@ -252,6 +262,9 @@ static lr_status read_chunk(const exr_input *exr, exr_result_t code, const exr_c
                           exr->image->channels * sizeof *pixels);
         code = pixels ? decode_chunk(exr, chunk, pixels) : EXR_ERR_OUT_OF_MEMORY;
     }
+    /* The library takes zeros for the missing end of an uncompressed chunk. */
+    if (code == EXR_ERR_SUCCESS && exr->truncated)
+        code = EXR_ERR_READ_IO;
     if (code == EXR_ERR_SUCCESS)
         copy_chunk(exr, chunk, x, y, pixels);
     free(pixels);
@@ -324,9 +337,8 @@ lr_status image_read_exr(const image_file *file, lr_image *image, lr_error *erro
     setup.alloc_fn = allocate;
     setup.free_fn = free;
     setup.user_data = &exr;
-    /* No size: the library's reads then run into the end of the file, which tells truncated files
-     * from corrupt ones. */
     setup.read_fn = on_read;
+    setup.size_fn = on_size;
     setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
     exr_result_t code = exr_start_read(&exr.context, "EXR", &setup);
     if (code != EXR_ERR_SUCCESS)

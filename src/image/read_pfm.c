@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The scale: its sign is the byte order, its absolute value a factor. */
+/* The scale: its sign is the byte order. Its absolute value is left alone, as programs disagree on
+ * whether samples are to be multiplied by it or divided. */
 static lr_status read_scale(image_header *header, double *scale, lr_error *error)
 {
     char text[64];
@@ -71,11 +72,8 @@ lr_status image_read_pfm(const image_file *file, lr_image *image, lr_error *erro
     if (status != LR_OK)
         return status;
     const unsigned char *in = file->bytes + header.at;
-    float factor = (float)fabs(scale);
     for (uint32_t y = height; y-- > 0;)
-        for (size_t i = 0; i < count; i++, in += 4) {
-            float value = read_float(in, scale < 0);
-            image->samples[y * count + i] = factor == 1 ? value : value * factor;
-        }
+        for (size_t i = 0; i < count; i++, in += 4)
+            image->samples[y * count + i] = read_float(in, scale < 0);
     return LR_OK;
 }

@@ -29,6 +29,17 @@ pngtopnm "$folder/e.png" >"$work/e.ppm" 2>/dev/null
 same "$folder/a.ppm" "$work/e.ppm"
 expect 0 "$lavaray" render -q $small -o "$folder/f.pfm"
 head -c 2 "$folder/f.pfm" | grep -q PF || problem 'not a PFM'
+expect 0 "$lavaray" render -q $small -o "$folder/f.exr" && expect 0 "$lavaray" render -q $small -o - --format exr
+same "$folder/f.exr" "$work/out"
+expect 0 "$lavaray" render -q $small -o "$folder/h.exr" --half
+[ "$(wc -c <"$folder/h.exr")" -lt "$(wc -c <"$folder/f.exr")" ] || problem 'halves take more room than floats'
+if command -v exrheader >/dev/null; then
+    expect 0 exrheader "$folder/f.exr"
+    says out '^displayWindow .*: \(0 0\) - \(63 47\)$' && says out '^    R, 32-bit floating-point, sampling 1 1$'
+    expect 0 exrheader "$folder/h.exr" && says out '^    R, 16-bit floating-point, sampling 1 1$'
+fi
+expect 0 "$lavaray" render -q $small -o "$folder/picture" --format png
+same "$folder/e.png" "$folder/picture"
 expect 0 "$lavaray" render -q $small -o "$folder/g.ppm" --maxval 65535 --transfer linear
 pnmfile "$folder/g.ppm" | grep -q 'maxval 65535' || problem 'not 16 bits'
 

@@ -15,7 +15,7 @@ for command in render devices doctor validate schema compare; do
 done
 expect 0 "$lavaray" render --help
 says out '^For tests: the picture does not depend on these:'
-for flag in output size spp depth seed maxval transfer exposure camera crop device stats quiet \
+for flag in output format size spp depth seed maxval transfer half exposure camera crop device stats quiet \
     verbose tile chunk storage-loads; do
     says out "--$flag( |$)"
 done
@@ -43,8 +43,8 @@ wrong "unknown flag '--frobnicate'" render $small -o "$out" --frobnicate
 wrong 'no scene given' render -o "$out"
 wrong 'one scene at a time' render $small $small -o "$out"
 wrong 'where to' render $small
-wrong '\.ppm, \.png or \.pfm' render $small -o "$work/x.gif"
-wrong '\.ppm, \.png or \.pfm' render $small -o "$work/ppm"
+wrong '\.ppm, \.png, \.pfm or \.exr' render $small -o "$work/x.gif"
+wrong '\.ppm, \.png, \.pfm or \.exr' render $small -o "$work/ppm"
 wrong '--output needs a value' render $small -o
 wrong '--output needs a value' render $small -o --spp 4
 wrong '--spp is given twice' render $small -o "$out" --spp 4 --spp=5
@@ -70,6 +70,11 @@ wrong '255 or 65535' render $small -o "$work/x.png" --maxval 1000
 wrong 'from 1 to 65535' render $small -o "$out" --maxval 65536
 wrong 'PFM' render $small -o "$work/x.pfm" --maxval 255
 wrong 'PFM' render $small -o "$work/x.pfm" --transfer srgb
+wrong 'EXR' render $small -o "$work/x.exr" --maxval 255
+wrong 'EXR' render $small -o "$work/x.exr" --transfer srgb
+wrong 'for EXR alone' render $small -o "$out" --half
+wrong 'for EXR alone' render $small -o "$work/x.exr" --format ppm --half
+wrong 'must be ppm\|png\|pfm\|exr' render $small -o - --format jpg
 wrong 'standard output' render $small -o - --stats -
 wrong 'same name' render $small -o "$out" --stats "$out"
 wrong "unexpected 'x'" devices x

@@ -350,6 +350,7 @@ static void test_format_from_path(void **state)
         {"a.ppm", LR_FORMAT_PPM},
         {"a.PNG", LR_FORMAT_PNG},
         {"x/y.z/b.Pfm", LR_FORMAT_PFM},
+        {"a.exr", LR_FORMAT_EXR},
         {"a.ppm.png", LR_FORMAT_PNG},
         {"a.jpg", -1},
         {"ppm", -1},

@@ -81,7 +81,7 @@ static void test_pfm(void **state)
                                  "\x00\x00\x00\xbf\x00\x00\x00\x00\x60\x42\xa2\x0d";
     EXPECT(little, 1, 2, 3, 0, -0.5f, 0, 1e-30f, 1, 2, 3);
     EXPECT("Pf 2 1 1 \x3f\x80\x00\x00\xc0\x00\x00\x00", 2, 1, 1, 0, 1, -2);
-    EXPECT("Pf\n1 2\n-2.5e-1\n\x00\x00\x80\x3f\x00\x00\x00\x40", 1, 2, 1, 0, 0.5f, 0.25f);
+    EXPECT("Pf\n1 2\n-2.5e-1\n\x00\x00\x80\x3f\x00\x00\x00\x40", 1, 2, 1, 0, 2, 1);
     lr_image image = decode_bytes(BYTES("Pf 2 1 1\n\x7f\xc0\x00\x00\xff\x80\x00\x00"));
     assert_true(isnan(image.samples[0]) && image.samples[1] == -INFINITY);
     lr_image_free(&image);

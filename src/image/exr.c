@@ -1,0 +1,190 @@
+#include "image/image_internal.h"
+
+#include <OpenEXR/openexr.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+enum { ZIP_LEVEL = 4 }; /* OpenEXR's own choice: higher ones take long for little */
+
+typedef struct exr_output {
+    const image_encoder *encoder;
+    exr_context_t context;
+    image_buffer file;
+    void *rows; /* of one chunk, 3 * width samples each */
+    exr_result_t (*compress)(exr_encode_pipeline_t *);
+    char reason[128]; /* the library's, the first one */
+} exr_output;
+
+static void on_error(exr_const_context_t context, exr_result_t code, const char *message)
+{
+    (void)code;
+    void *user = NULL;
+    if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user)
+        return;
+    exr_output *output = user;
+    if (!output->reason[0])
+        snprintf(output->reason, sizeof output->reason, "%s", message);
+}
+
+static int64_t on_write(exr_const_context_t context, void *user, const void *bytes, uint64_t size,
+                        uint64_t offset, exr_stream_error_func_ptr_t error_cb)
+{
+    exr_output *output = user;
+    if (image_buffer_write(&output->file, offset, bytes, size))
+        return (int64_t)size;
+    error_cb(context, EXR_ERR_OUT_OF_MEMORY, "out of memory");
+    return -1;
+}
+
+uint16_t image_half(float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    uint32_t sign = bits >> 16 & 0x8000, magnitude = bits & 0x7fffffff;
+    if (magnitude > 0x7f800000) /* NaN stays one, whatever bits are cut off */
+        return (uint16_t)(sign | 0x7e00 | (magnitude >> 13 & 0x3ff));
+    if (magnitude == 0x7f800000)
+        return (uint16_t)(sign | 0x7c00);
+    if (magnitude > 0x477fe000)
+        return (uint16_t)(sign | 0x7bff);
+    if (magnitude < 0x38800000) {
+        /* Subnormal halves count in 2^-24; at 2^23 floats have whole steps. */
+        float steps = (value < 0 ? -value : value) * 0x1p24f + 0x1p23f;
+        memcpy(&bits, &steps, sizeof bits);
+        return (uint16_t)(sign | (bits - 0x4b000000));
+    }
+    magnitude += 0xfff + (magnitude >> 13 & 1);
+    return (uint16_t)(sign | (magnitude - 0x38000000) >> 13);
+}
+
+/* The header: R, G and B in the default layer, as other programs expect them; the windows begin at
+ * the origin. */
+static exr_result_t write_header(const exr_output *output)
+{
+    static const char *const names[] = {"R", "G", "B"};
+    const lr_picture *picture = output->encoder->picture;
+    const lr_encoding *encoding = output->encoder->encoding;
+    exr_pixel_type_t type = encoding->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
+    int part;
+    exr_result_t code = exr_add_part(output->context, NULL, EXR_STORAGE_SCANLINE, &part);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_initialize_required_attr_simple(output->context, 0, (int32_t)picture->width,
+                                                   (int32_t)picture->height, EXR_COMPRESSION_ZIP);
+    for (int i = 0; i < 3 && code == EXR_ERR_SUCCESS; i++)
+        code =
+            exr_add_channel(output->context, 0, names[i], type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    for (uint32_t i = 0; i < encoding->text_count && code == EXR_ERR_SUCCESS; i++)
+        code = exr_attr_set_string(output->context, 0, encoding->texts[i].key,
+                                   encoding->texts[i].value);
+    return code == EXR_ERR_SUCCESS ? exr_write_header(output->context) : code;
+}
+
+/* A chunk as large as its pixels is read as uncompressed, and OpenEXRCore 3.1 lets one be written
+ * that is compressed to just that size. */
+static exr_result_t compress(exr_encode_pipeline_t *pipeline)
+{
+    const exr_output *output = pipeline->encoding_user_data;
+    exr_result_t code = output->compress(pipeline);
+    if (code == EXR_ERR_SUCCESS && pipeline->compressed_bytes == pipeline->packed_bytes)
+        memcpy(pipeline->compressed_buffer, pipeline->packed_buffer, pipeline->packed_bytes);
+    return code;
+}
+
+static void convert_rows(const exr_output *output, const exr_chunk_info_t *chunk)
+{
+    const image_encoder *encoder = output->encoder;
+    size_t row = 3 * (size_t)encoder->picture->width, count = row * (size_t)chunk->height;
+    const float *in = encoder->picture->pixels + (size_t)chunk->start_y * row;
+    float *floats = output->rows;
+    uint16_t *halves = output->rows;
+    for (size_t i = 0; i < count; i++)
+        if (encoder->encoding->half)
+            halves[i] = image_half(image_exposed(encoder, in[i]));
+        else
+            floats[i] = image_exposed(encoder, in[i]);
+}
+
+static exr_result_t write_chunk(exr_output *output, const exr_chunk_info_t *chunk)
+{
+    size_t sample = output->encoder->encoding->half ? sizeof(uint16_t) : sizeof(float);
+    exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
+    exr_result_t code = exr_encoding_initialize(output->context, 0, chunk, &pipeline);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    convert_rows(output, chunk);
+    for (int i = 0; i < pipeline.channel_count; i++) {
+        exr_coding_channel_info_t *channel = &pipeline.channels[i];
+        size_t place = channel->channel_name[0] == 'R'   ? 0
+                       : channel->channel_name[0] == 'G' ? 1
+                                                         : 2;
+        channel->encode_from_ptr = (const uint8_t *)output->rows + place * sample;
+        channel->user_pixel_stride = (int32_t)(3 * sample);
+        channel->user_line_stride = channel->user_pixel_stride * chunk->width;
+    }
+    code = exr_encoding_choose_default_routines(output->context, 0, &pipeline);
+    if (code == EXR_ERR_SUCCESS) {
+        output->compress = pipeline.compress_fn;
+        pipeline.encoding_user_data = output;
+        pipeline.compress_fn = compress;
+        code = exr_encoding_run(output->context, 0, &pipeline);
+    }
+    exr_encoding_destroy(output->context, &pipeline);
+    return code;
+}
+
+static exr_result_t write_file(exr_output *output)
+{
+    const lr_picture *picture = output->encoder->picture;
+    exr_result_t code = write_header(output);
+    int32_t lines = 0;
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_get_scanlines_per_chunk(output->context, 0, &lines);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    output->rows = lr_alloc(3 * (size_t)picture->width, (size_t)lines * sizeof(float));
+    if (!output->rows)
+        return EXR_ERR_OUT_OF_MEMORY;
+    for (int64_t y = 0; y < picture->height && code == EXR_ERR_SUCCESS; y += lines) {
+        exr_chunk_info_t chunk = {0};
+        code = exr_write_scanline_chunk_info(output->context, 0, (int)y, &chunk);
+        if (code == EXR_ERR_SUCCESS)
+            code = write_chunk(output, &chunk);
+    }
+    return code;
+}
+
+lr_status image_encode_exr(const image_encoder *encoder, unsigned char **bytes, size_t *size,
+                           lr_error *error)
+{
+    const lr_picture *picture = encoder->picture;
+    exr_output output = {.encoder = encoder};
+    if (picture->width > INT32_MAX / 16 || picture->height > INT32_MAX)
+        return lr_fail(error, LR_ERROR_ARGUMENT, "an EXR of %u x %u pixels is too large",
+                       picture->width, picture->height);
+    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    setup.error_handler_fn = on_error;
+    setup.user_data = &output;
+    setup.write_fn = on_write;
+    setup.zip_level = ZIP_LEVEL;
+    exr_result_t code = exr_start_write(&output.context, "EXR", EXR_WRITE_FILE_DIRECTLY, &setup);
+    if (code == EXR_ERR_SUCCESS) {
+        code = write_file(&output);
+        /* Also writes the table of chunks. */
+        exr_result_t finished = exr_finish(&output.context);
+        code = code == EXR_ERR_SUCCESS ? finished : code;
+    }
+    free(output.rows);
+    if (code == EXR_ERR_SUCCESS) {
+        *bytes = output.file.bytes;
+        *size = output.file.size;
+        return LR_OK;
+    }
+    free(output.file.bytes);
+    bool out_of_memory = code == EXR_ERR_OUT_OF_MEMORY || !output.reason[0];
+    return lr_fail(error, out_of_memory ? LR_ERROR_MEMORY : LR_ERROR_ARGUMENT,
+                   "an EXR of %u x %u pixels cannot be made: %s", picture->width, picture->height,
+                   output.reason[0] ? output.reason : exr_get_default_error_message(code));
+}
