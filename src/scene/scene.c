@@ -2,6 +2,7 @@
 #include "scene/read.h"
 
 #include "base/file.h"
+#include "base/hash.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -202,6 +203,7 @@ lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_s
     read->source = lr_string_copy(name, strlen(name));
     if (!read->source)
         goto no_memory;
+    lr_hash_bytes(text, length, read->sha256);
     problems->language = &scene_language;
     problems->name = name;
     problems->text = text;
