@@ -160,6 +160,12 @@ static int check_values(const command *self, const values *v, const char *folder
     if (v->update && v->update_missing) {
         return wrong_usage(self, "--update includes --update-missing; give one of them");
     }
+    return EXIT_FINE;
+}
+
+/* Whether all reports can be written; creates their folders. */
+static int check_reports(const command *self, const values *v)
+{
     const char *reports[] = {v->junit, v->json, v->report};
     int to_stdout = 0;
     for (int i = 0; i < 3; i++) {
@@ -435,7 +441,8 @@ static int run(const command *self, int argc, char **argv)
             puts(cases[i]->name);
         }
     } else if (cases) {
-        code = run_cases(&v, folder, cases, count);
+        code = check_reports(self, &v);
+        code = code == EXIT_FINE ? run_cases(&v, folder, cases, count) : code;
     }
     free(cases);
     lr_suite_free(suite);

@@ -85,13 +85,14 @@ static lr_status walk(lr_listing *listing, const char *folder, const char *below
     while (status == LR_OK && (entry = readdir(stream)) != NULL) {
         if (entry->d_name[0] == '.')
             continue;
-        struct stat info;
+        struct stat info, link;
         char *name = lr_format_text("%s%s", below, entry->d_name);
         if (!name) {
             status = out_of_memory(error);
-        } else if (fstatat(dirfd(stream), entry->d_name, &info, 0) != 0) {
+        } else if (fstatat(dirfd(stream), entry->d_name, &info, 0) != 0 ||
+                   fstatat(dirfd(stream), entry->d_name, &link, AT_SYMLINK_NOFOLLOW) != 0) {
             free(name); /* a link to nowhere */
-        } else if (S_ISDIR(info.st_mode) && depth > 0) {
+        } else if (S_ISDIR(link.st_mode) && depth > 0) {
             char *inner = lr_format_text("%s/", name);
             status = inner ? walk(listing, folder, inner, endings, depth - 1, error)
                            : out_of_memory(error);

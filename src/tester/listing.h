@@ -11,7 +11,8 @@ typedef struct lr_listing {
 
 /* Adds the regular files of the folder, and with `deep` of the folders below it, whose names end in
  * one of `endings` (NULL behind the last, without the dot, compared without regard to case). Names
- * that begin with a dot are left out. A folder that cannot be read is LR_ERROR_FILE. */
+ * that begin with a dot are left out; links are followed to files, not to folders. A folder that
+ * cannot be read is LR_ERROR_FILE. */
 lr_status lr_listing_read(lr_listing *listing, const char *folder, const char *const *endings,
                           bool deep, lr_error *error);
 void lr_listing_free(lr_listing *listing);

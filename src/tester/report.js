@@ -76,13 +76,18 @@ function fillCommands(c) {
   const rows = [['Command', c.command], ['Run again', c.rerun], ['Accept', c.accept],
                 ['Golden', c.golden], ['Candidate', c.candidate]].filter(row => row[1]);
   $('commands').replaceChildren(...rows.map(([name, text]) => {
+    const code = el('code', {textContent: text});
     const copy = el('button', {textContent: 'Copy', onclick: async () => {
-      await navigator.clipboard.writeText(text);
-      copy.textContent = 'Copied';
-      setTimeout(() => { copy.textContent = 'Copy'; }, 1200);
+      try {
+        await navigator.clipboard.writeText(text);
+        copy.textContent = 'Copied';
+        setTimeout(() => { copy.textContent = 'Copy'; }, 1200);
+      } catch { // not allowed for pages from files everywhere: the next best thing
+        getSelection().selectAllChildren(code);
+      }
     }});
     copy.style.minWidth = '76px';
-    return el('div', {}, el('dt', {textContent: name}), el('dd', {}, el('code', {textContent: text})), copy);
+    return el('div', {}, el('dt', {textContent: name}), el('dd', {}, code), copy);
   }));
 }
 
@@ -188,6 +193,8 @@ async function readAddress() {
   state.probe = probe ? {x: Number(probe[1]), y: Number(probe[2])} : null;
   if (index >= 0 && !cases[index].failed) state.filter = 'all';
   fillList();
+  $('case').hidden = cases.length === 0; // as in a shard that got none
+  if (cases.length === 0) return;
   await select(Math.max(0, index), true);
   if (p.has('worst') && current().compare?.regions?.length && !$('viewer').hidden)
     showRegion(current().compare.regions[0]);
@@ -241,7 +248,7 @@ addEventListener('keydown', event => {
   if (event.key === 'ArrowLeft' || event.key === 'ArrowRight') {
     if (event.target === $('at')) return; // moves the divider
     step(event.key === 'ArrowLeft' ? -1 : 1);
-  } else if ($('viewer').hidden) {
+  } else if ($('viewer').hidden || !$('stage').firstChild) {
     return;
   } else if (views.some(v => v.key === event.key)) {
     setView(views.find(v => v.key === event.key).id);
@@ -255,7 +262,7 @@ addEventListener('keydown', event => {
   }
   event.preventDefault();
 });
-addEventListener('resize', () => { if (!$('viewer').hidden) build(); });
+addEventListener('resize', () => { if ($('stage').firstChild && !$('viewer').hidden) build(); });
 addEventListener('hashchange', readAddress);
 
 fillHeader();

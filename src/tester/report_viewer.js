@@ -189,7 +189,7 @@ function drawPane({kind, canvas}) {
 }
 
 function draw() {
-  if ($('viewer').hidden) return;
+  if ($('viewer').hidden || !$('stage').firstChild) return;
   panes().forEach(drawPane);
   const {canvas} = panes()[0];
   const scale = place(canvas.clientWidth, canvas.clientHeight).scale;

@@ -81,6 +81,24 @@ look 'case=spot.ppm&worst'
 has '6 × 4 at 30, 20' ''
 look 'case=nonsense&view=nonsense&scale=nonsense&at=nonsense&probe=nonsense'
 
+# Flicker shows both in turn.
+seen=
+for budget in 1000 1500 2000 2500; do
+    browse 'case=flat.ppm&view=flicker' --dump-dom --virtual-time-budget=$budget
+    seen="$seen $(grep -o 'data-kind="[a-z]*"' dom)"
+done
+case $seen in
+*reference*candidate* | *candidate*reference*) ;;
+*) problem "flicker shows$seen" ;;
+esac
+
+# A page without cases, as that of an empty shard.
+mv page.html full.html
+expect 0 "$tool" test --reference reference --candidate candidate --shard 9/9 --report page.html
+look ''
+has '0 cases, none failed' ''
+mv full.html page.html
+
 # share VIEW... : percent of the reference's and of the candidate's colour among both on the screen.
 share() {
     browse "$1" --screenshot="$work/shot.png" --window-size="${2:-1280,1000}"

@@ -80,6 +80,15 @@ echo 'defaults: {samples: 1}' >flat/tests.yaml
 expect 0 "$tool" test flat --list
 [ "$(cat out)" = ball ] || problem "cases of a flat folder: $(xargs <out)"
 
+# Links to folders are not followed: they may lead back here.
+mkdir -p round/scenes
+cp t/scenes/ball.yaml round/scenes
+ln -s . round/scenes/here
+ln -s .. round/scenes/up
+ln -s ball.yaml round/scenes/link.yaml
+expect 0 "$tool" test round --list
+[ "$(xargs <out)" = 'ball link' ] || problem "cases of a folder with links: $(xargs <out)"
+
 mkdir empty
 expect 2 "$tool" test empty && one_line
 says err 'no test cases here'
