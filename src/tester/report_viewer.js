@@ -21,6 +21,7 @@ const views = [
 ];
 const FLICKER_MS = 500; // below three flashes a second
 const ZOOM_MAX = 128;
+const PIXEL_SCALE = 6; // from here on single pixels can be told apart
 
 /* Failures first; otherwise the order of the run. */
 const cases = data.cases.map((c, i) => [c, i])
@@ -146,17 +147,22 @@ function drawPicture(context, picture, at, width, height, ratio) {
   context.drawImage(picture.image, 0, 0);
 }
 
-function drawFrame(context, at, width, height, ratio) {
-  const region = current().compare?.regions?.[0];
-  if (!region || !state.frame) return;
-  context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  const x = width / 2 + (region.x - at.x) * at.scale, y = height / 2 + (region.y - at.y) * at.scale;
-  const w = region.width * at.scale, h = region.height * at.scale;
-  for (const [color, line] of [['#000', 4], ['#ffd84d', 2]]) {
-    context.strokeStyle = color;
+function drawBox(context, box, at, width, height, color, gap) {
+  const x = width / 2 + (box.x - at.x) * at.scale - gap, y = height / 2 + (box.y - at.y) * at.scale - gap;
+  for (const [stroke, line] of [['#000', 4], [color, 2]]) {
+    context.strokeStyle = stroke;
     context.lineWidth = line;
-    context.strokeRect(x - 3, y - 3, w + 6, h + 6);
+    context.strokeRect(x, y, box.width * at.scale + 2 * gap, box.height * at.scale + 2 * gap);
   }
+}
+
+/** The frame of the worst region, and that of the pixel whose values are shown. */
+function drawFrames(context, at, width, height, ratio) {
+  const region = current().compare?.regions?.[0];
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  if (region && state.frame) drawBox(context, region, at, width, height, '#ffd84d', 3);
+  if (state.probe && at.scale >= PIXEL_SCALE)
+    drawBox(context, {...state.probe, width: 1, height: 1}, at, width, height, '#fff', 1);
 }
 
 function drawPane({kind, canvas}) {
@@ -185,7 +191,7 @@ function drawPane({kind, canvas}) {
     context.fillStyle = '#fff';
     context.fillRect(split - 1, 0, 2, height);
   }
-  drawFrame(context, at, width, height, ratio);
+  drawFrames(context, at, width, height, ratio);
 }
 
 function draw() {
@@ -244,10 +250,12 @@ function zoomBy(factor, fixed) {
 function showRegion(region) {
   const {canvas} = panes()[0];
   const room = 0.5 * Math.min(canvas.clientWidth / region.width, canvas.clientHeight / region.height);
-  state.scale = Math.max(1, Math.min(32, Math.floor(room)));
-  state.x = region.x + region.width / 2;
-  state.y = region.y + region.height / 2;
-  state.probe = {x: region.worst_at[0], y: region.worst_at[1]};
+  const [x, y] = region.worst_at;
+  const large = room < 4; // then its worst pixel tells more than all of it
+  state.scale = large ? 8 : Math.min(32, Math.floor(room));
+  state.x = large ? x + 0.5 : region.x + region.width / 2;
+  state.y = large ? y + 0.5 : region.y + region.height / 2;
+  state.probe = {x, y};
   draw();
 }
 
@@ -260,9 +268,12 @@ function listen(canvas) {
   };
   const probe = p => {
     const at = place(canvas.clientWidth, canvas.clientHeight);
-    state.probe = {x: Math.floor(at.x + (p.x - canvas.clientWidth / 2) / at.scale),
-                   y: Math.floor(at.y + (p.y - canvas.clientHeight / 2) / at.scale)};
-    drawValues();
+    const x = Math.floor(at.x + (p.x - canvas.clientWidth / 2) / at.scale);
+    const y = Math.floor(at.y + (p.y - canvas.clientHeight / 2) / at.scale);
+    if (state.probe?.x === x && state.probe?.y === y) return;
+    state.probe = {x, y};
+    if (at.scale >= PIXEL_SCALE) draw();
+    else drawValues();
   };
   canvas.addEventListener('pointerdown', event => {
     const p = point(event);
