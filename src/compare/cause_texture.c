@@ -38,7 +38,7 @@ static uint32_t count_levels(const compare_pair *pair, const float *picture, uns
     return levels;
 }
 
-/* Differences of one step in many pixels, or a test with far fewer levels than the reference, and
+/* Differences of one step in many pixels; or one picture with far fewer levels than the other, and
  * differences below the distance of two. */
 bool cause_is_rounding(const cause_view *view, lr_compare_result *result, bool *out_of_memory)
 {
@@ -54,9 +54,13 @@ bool cause_is_rounding(const cause_view *view, lr_compare_result *result, bool *
         free(seen);
         return false;
     }
-    uint32_t test_levels = count_levels(pair, pair->test, seen, (uint32_t)most);
-    bool coarse = test_levels <= (uint32_t)most &&
-                  count_levels(pair, pair->reference, seen, LEVELS) >= 2 * test_levels;
+    bool coarse = false;
+    for (int i = 0; i < 2 && !coarse; i++) {
+        const float *few = i ? pair->reference : pair->test;
+        const float *many = i ? pair->test : pair->reference;
+        uint32_t levels = count_levels(pair, few, seen, (uint32_t)most);
+        coarse = levels <= (uint32_t)most && count_levels(pair, many, seen, LEVELS) >= 2 * levels;
+    }
     free(seen);
     return coarse && cause_found(result, LR_CAUSE_ROUNDING, 1);
 }

@@ -45,8 +45,10 @@ void flip_light_row(const flip_light *light, const compare_pair *pair, const flo
         const float *in = samples + (pair->colors == 3 ? c : 0);
         float *out = rgb[c];
         if (light->decoded)
-            for (uint32_t x = 0; x < width; x++)
-                out[x] = light->decoded[(uint32_t)(in[x * stride] * (float)light->maxval + 0.5f)];
+            for (uint32_t x = 0; x < width; x++) {
+                float value = approx_min(approx_max(in[x * stride], 0), 1);
+                out[x] = light->decoded[(uint32_t)(value * (float)light->maxval + 0.5f)];
+            }
         else if (light->linear)
             for (uint32_t x = 0; x < width; x++)
                 out[x] = tone_map(clean(in[x * stride] * light->scale));

@@ -1,5 +1,5 @@
-# An independent judge: the published FLIP on the seeded set of faulty pictures and on renders, LDR
-# and HDR. Needs LAVARAY_FLIP_PYTHON, which tools/test sets.
+# Independent judges: the published FLIP, and SSIM by its definition, on the seeded set of faulty
+# pictures and on renders, LDR and HDR. Needs LAVARAY_FLIP_PYTHON, which tools/test sets.
 set -u
 [ -n "${LAVARAY_FLIP_PYTHON:-}" ] || { echo 'no flip-evaluator; tools/get-flip installs it' >&2; exit 77; }
 "$LAVARAY" doctor >/dev/null 2>&1 || { echo 'no usable Vulkan device' >&2; exit 77; }

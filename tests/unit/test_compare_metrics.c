@@ -191,6 +191,10 @@ static void test_masks(void **state)
     mask.samples[10 * SIZE + 7] = 1;
     result = compare(&a, &b, &options);
     assert_int_equal(result.different_pixels, 1);
+    mask.samples[10 * SIZE + 7] = 127.0f / 255; /* nearer to black */
+    assert_true(compare(&a, &b, &options).pass);
+    mask.samples[10 * SIZE + 7] = 128.0f / 255;
+    assert_false(compare(&a, &b, &options).pass);
     options.ignored[0] = (lr_rectangle){7, 10, UINT32_MAX, 1}; /* reaches over the edge */
     options.ignored_count = 1;
     assert_true(compare(&a, &b, &options).pass);
