@@ -7,6 +7,7 @@
 #include "tester/listing.h"
 #include "tester/process.h"
 #include "tester/run.h"
+#include "tester/text.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -160,28 +161,28 @@ static int check_values(const command *self, const values *v, const char *folder
     if (v->update && v->update_missing) {
         return wrong_usage(self, "--update includes --update-missing; give one of them");
     }
-    return EXIT_FINE;
-}
-
-/* Whether all reports can be written; creates their folders. */
-static int check_reports(const command *self, const values *v)
-{
     const char *reports[] = {v->junit, v->json, v->report};
     int to_stdout = 0;
     for (int i = 0; i < 3; i++) {
-        lr_error error = {0};
-        if (!reports[i]) {
-            continue;
-        }
-        to_stdout += strcmp(reports[i], "-") == 0;
-        lr_status status = lr_make_folders(reports[i], &error);
-        int code = status == LR_OK ? check_writable(reports[i]) : report_failure(&error);
-        if (code != EXIT_FINE) {
-            return code;
-        }
+        to_stdout += reports[i] && strcmp(reports[i], "-") == 0;
     }
     return to_stdout > 1 ? wrong_usage(self, "only one report can have standard output")
                          : EXIT_FINE;
+}
+
+/* Whether all reports can be written; creates their folders. */
+static int check_reports(const values *v)
+{
+    const char *reports[] = {v->junit, v->json, v->report};
+    int code = EXIT_FINE;
+    for (int i = 0; i < 3 && code == EXIT_FINE; i++) {
+        lr_error error = {0};
+        if (reports[i]) {
+            lr_status status = lr_make_folders(reports[i], &error);
+            code = status == LR_OK ? check_writable(reports[i]) : report_failure(&error);
+        }
+    }
+    return code;
 }
 
 /* "2/5": 1 and 5. */
@@ -432,7 +433,9 @@ static int run(const command *self, int argc, char **argv)
         return report_failure(&error);
     }
     for (uint32_t i = 0; i < suite->orphan_count; i++) {
-        print_warning("%s belongs to no case", suite->orphans[i]);
+        char *path = lr_clean_text(suite->orphans[i], strlen(suite->orphans[i]));
+        print_warning("%s belongs to no case", path ? path : "a golden");
+        free(path);
     }
     uint32_t count;
     const lr_case **cases = select_cases(&v, suite, &count, &code);
@@ -441,7 +444,7 @@ static int run(const command *self, int argc, char **argv)
             puts(cases[i]->name);
         }
     } else if (cases) {
-        code = check_reports(self, &v);
+        code = check_reports(&v);
         code = code == EXIT_FINE ? run_cases(&v, folder, cases, count) : code;
     }
     free(cases);

@@ -1,6 +1,7 @@
 #include "cli/test_view.h"
 
 #include "cli/cli.h"
+#include "tester/text.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -46,9 +47,11 @@ static const char *color_of(lr_outcome outcome)
 
 static void print_line(const test_view *view, const char *label, const char *text)
 {
-    if (text && *text) {
-        fprintf(view->out, "%*s%s%s\n", INDENT, "", label, text);
+    char *clean = text && *text ? lr_clean_text(text, strlen(text)) : NULL;
+    if (clean) {
+        fprintf(view->out, "%*s%s%s\n", INDENT, "", label, clean);
     }
+    free(clean);
 }
 
 /* Several lines, each behind a bar. */
@@ -67,10 +70,12 @@ void test_view_result(const test_view *view, const lr_case_result *r)
     if (view->quiet && !failed) {
         return;
     }
-    const char *name = lr_outcome_name(r->outcome);
-    put(view, color_of(r->outcome), name);
-    fprintf(view->out, "%*s%-*s %6.2f s\n", INDENT - (int)strlen(name), "", view->name_width,
-            r->item->name, r->seconds);
+    const char *outcome = lr_outcome_name(r->outcome);
+    char *name = lr_clean_text(r->item->name, strlen(r->item->name));
+    put(view, color_of(r->outcome), outcome);
+    fprintf(view->out, "%*s%-*s %6.2f s\n", INDENT - (int)strlen(outcome), "", view->name_width,
+            name ? name : "", r->seconds);
+    free(name);
     if (failed) {
         print_line(view, "", r->message);
         print_line(view, "", r->cause);

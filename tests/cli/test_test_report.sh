@@ -92,5 +92,8 @@ if command -v script >/dev/null; then
     colored env TERM=xterm NO_COLOR=1 && problem 'colour in spite of NO_COLOR'
     colored env TERM=dumb && problem 'colour on a dumb terminal'
 fi
-grep -q "$escape" out && problem 'an escape sequence in a file'
+mkdir -p t/golden reference candidate
+echo 'P2 2 1 255 1 2' >reference/"$escape[31mred.pgm"
+"$tool" test --reference reference --candidate candidate >out 2>err
+grep -q "$escape" out err && problem 'an escape sequence from the name of a file'
 finish
