@@ -43,7 +43,8 @@ void lr_scene_destroy(lr_scene *scene);
 
 typedef struct lr_scene_info {
     uint32_t objects, lights, materials, cameras;
-    float exposure; /* image.exposure, in stops */
+    float exposure;  /* image.exposure, in stops */
+    char sha256[65]; /* of the text, as 64 hexadecimal digits */
 } lr_scene_info;
 
 void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info);

@@ -31,7 +31,7 @@ typedef struct command {
 } command;
 
 extern const command command_render, command_devices, command_doctor, command_validate,
-    command_schema, command_compare;
+    command_schema, command_compare, command_test;
 
 /* One line on stderr, with "lavaray: " in front. */
 void print_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
@@ -41,6 +41,8 @@ void print_warning(const char *format, ...) __attribute__((format(printf, 1, 2))
 bool terminal_present(void);
 /* The same, and NO_COLOR does not forbid colours. */
 bool terminal_has_color(void);
+/* The same of another file descriptor. */
+bool stream_has_color(int fd);
 
 /* Prints what failed and returns the exit code that belongs to it. */
 int report_failure(const lr_error *error);

@@ -12,21 +12,31 @@
 #include <time.h>
 #include <unistd.h>
 
-static const command *const commands[] = {&command_render, &command_devices, &command_doctor,
-                                          &command_validate, &command_schema,
-                                          &command_compare};
+static const command *const commands[] = {&command_render,   &command_devices, &command_doctor,
+                                          &command_validate, &command_schema,  &command_compare,
+                                          &command_test};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
+
+static bool is_terminal(int fd)
+{
+    const char *term = getenv("TERM");
+    return isatty(fd) && term && *term && strcmp(term, "dumb") != 0;
+}
 
 bool terminal_present(void)
 {
-    const char *term = getenv("TERM");
-    return isatty(STDERR_FILENO) && term && *term && strcmp(term, "dumb") != 0;
+    return is_terminal(STDERR_FILENO);
+}
+
+bool stream_has_color(int fd)
+{
+    const char *no_color = getenv("NO_COLOR");
+    return is_terminal(fd) && !(no_color && *no_color);
 }
 
 bool terminal_has_color(void)
 {
-    const char *no_color = getenv("NO_COLOR");
-    return terminal_present() && !(no_color && *no_color);
+    return stream_has_color(STDERR_FILENO);
 }
 
 static void print_message(const char *color, const char *format, va_list arguments)

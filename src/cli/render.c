@@ -2,6 +2,7 @@
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
+#include "tester/result.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -246,6 +247,36 @@ static int say_interrupted(void)
     return EXIT_INTERRUPTED;
 }
 
+/* "640x480, 4 samples, depth 6, seed 0" and what else the pixels depend on, as the picture's file
+ * says it. */
+static void describe_settings(const values *v, const lr_encoding *encoding,
+                              const render_record *record, char *text, size_t size)
+{
+    const lr_render_stats *s = &record->stats;
+    FILE *out = fmemopen(text, size, "w");
+    if (!out) {
+        text[0] = '\0';
+        return;
+    }
+    fprintf(out, "%ux%u, %u sample%s, depth %u, seed %u", (unsigned)s->width, (unsigned)s->height,
+            (unsigned)s->samples, s->samples == 1 ? "" : "s", (unsigned)s->depth,
+            (unsigned)s->seed);
+    if (v->crop.width) {
+        fprintf(out, ", crop %u,%u,%u,%u", (unsigned)v->crop.x, (unsigned)v->crop.y,
+                (unsigned)v->crop.width, (unsigned)v->crop.height);
+    }
+    if (v->camera) {
+        fprintf(out, ", camera %.200s", v->camera);
+    }
+    if (encoding->exposure != 0) {
+        fprintf(out, ", exposure %.9g", (double)encoding->exposure);
+    }
+    if (encoding->format == LR_FORMAT_PNG && encoding->transfer == LR_TRANSFER_LINEAR) {
+        fputs(", linear", out);
+    }
+    fclose(out);
+}
+
 /* Traces and writes; fills what record does not hold yet. */
 static int trace_and_write(const values *v, lr_device *device, const lr_scene *scene,
                            lr_encoding encoding, progress *p, double start, render_record *record)
@@ -271,6 +302,16 @@ static int trace_and_write(const values *v, lr_device *device, const lr_scene *s
     if (code != EXIT_FINE) {
         goto done;
     }
+    char settings[512];
+    describe_settings(v, &encoding, record, settings, sizeof settings);
+    const lr_text texts[] = {
+        {LR_STAMP_SOFTWARE, "lavaray " LR_VERSION},
+        {LR_STAMP_SCENE, record->scene_hash},
+        {LR_STAMP_SETTINGS, settings},
+        {LR_STAMP_PIXELS, record->stats.hash},
+    };
+    encoding.texts = texts;
+    encoding.text_count = sizeof texts / sizeof *texts;
     double write_start = seconds_now();
     status = lr_picture_write(&picture, v->output, &encoding, &error);
     if (status != LR_OK) {
@@ -330,6 +371,7 @@ static int run(const command *self, int argc, char **argv)
         goto done;
     }
     lr_scene_get_info(scene, &scene_info);
+    record.scene_hash = scene_info.sha256;
     record.exposure = isnan(v.exposure) ? (double)scene_info.exposure : v.exposure;
     encoding.exposure = (float)record.exposure;
     encoding.maxval = v.maxval >= 0 ? (uint32_t)v.maxval : 0;

@@ -8,6 +8,7 @@ typedef struct render_record {
     const char *scene; /* paths as given */
     const char *output;
     const char *camera;     /* NULL: the scene's first */
+    const char *scene_hash; /* SHA-256 of its text */
     uint32_t width, height; /* of what was written: the crop's, if there is one */
     double exposure;
     lr_device_info device;

@@ -1,5 +1,7 @@
 #include "scene/scene.h"
 
+#include <string.h>
+
 void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info)
 {
     *info = (lr_scene_info){
@@ -9,4 +11,5 @@ void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info)
         .cameras = scene->camera_count,
         .exposure = (float)scene->image.exposure,
     };
+    memcpy(info->sha256, scene->sha256, sizeof info->sha256);
 }

@@ -17,6 +17,7 @@ typedef enum lr_field_type {
     LR_FIELD_COLORS,  /* lr_color[2] */
     LR_FIELD_SCALE,   /* lr_vec3 from a number or a vector */
     LR_FIELD_ROTATE,  /* lr_transform from three angles or {axis, angle} */
+    LR_FIELD_TEXT,    /* const char *, which lives as long as the tree of nodes */
     /* The rest is structure, which the record's own reader takes from its node. */
     LR_FIELD_RECORD,     /* a mapping as `record` says */
     LR_FIELD_PAINT,      /* a colour or a pattern */
@@ -26,6 +27,8 @@ typedef enum lr_field_type {
     LR_FIELD_CAMERAS,    /* name: camera, ... */
     LR_FIELD_LIGHTS,
     LR_FIELD_OBJECTS,
+    LR_FIELD_TEXTS,   /* a list of texts */
+    LR_FIELD_MAPPING, /* any other mapping, such as of names */
 } lr_field_type;
 
 enum {
@@ -44,7 +47,7 @@ typedef struct lr_field {
     unsigned flags;
     double minimum, maximum; /* of each component */
     double fallback[6];      /* the default; a boolean's and choice's is an integer */
-    const char *derived;
+    const char *derived;     /* of a text: what is expected, "a text" when NULL */
     const char *doc;
     size_t offset;
     const lr_record *record;

@@ -71,6 +71,17 @@ static void describe_range(const lr_field *field, char *out, size_t size)
         snprintf(out, size, "from %s to %s", low, high);
 }
 
+/* "one, two or three". */
+static void describe_choices(const char *const *choices, char *out, size_t size)
+{
+    size_t used = 0;
+    for (uint32_t i = 0; choices[i]; i++) {
+        const char *between = i == 0 ? "" : choices[i + 1] ? ", " : " or ";
+        int length = snprintf(out + used, size - used, "%s%s", between, choices[i]);
+        used += (size_t)length < size - used ? (size_t)length : size - used - 1;
+    }
+}
+
 const char *lr_field_expected(const lr_field *field, char buffer[LR_EXPECTED_MAX])
 {
     char range[96];
@@ -90,7 +101,7 @@ const char *lr_field_expected(const lr_field *field, char buffer[LR_EXPECTED_MAX
         snprintf(buffer, size, "true or false");
         break;
     case LR_FIELD_CHOICE:
-        snprintf(buffer, size, "%s or %s", field->choices[0], field->choices[1]);
+        describe_choices(field->choices, buffer, size);
         break;
     case LR_FIELD_VECTOR:
         snprintf(buffer, size, "three numbers [x, y, z]%s",
@@ -107,6 +118,9 @@ const char *lr_field_expected(const lr_field *field, char buffer[LR_EXPECTED_MAX
         break;
     case LR_FIELD_ROTATE:
         snprintf(buffer, size, "three angles [x, y, z] or {axis: [x, y, z], angle: degrees}");
+        break;
+    case LR_FIELD_TEXT:
+        snprintf(buffer, size, "%s", field->derived ? field->derived : "a text");
         break;
     case LR_FIELD_RECORD:
         snprintf(buffer, size, "a mapping of the keys of %s", field->record->name);
@@ -133,6 +147,12 @@ const char *lr_field_expected(const lr_field *field, char buffer[LR_EXPECTED_MAX
         break;
     case LR_FIELD_OBJECTS:
         snprintf(buffer, size, "a list of objects such as `- sphere: {radius: 1}`");
+        break;
+    case LR_FIELD_TEXTS:
+        snprintf(buffer, size, "a list such as [one, two]");
+        break;
+    case LR_FIELD_MAPPING:
+        snprintf(buffer, size, "a mapping");
         break;
     }
     return buffer;

@@ -88,9 +88,8 @@ static lr_node *new_node(builder *b, lr_node_kind kind, const struct fy_mark *st
     node->offset = start ? (uint32_t)start->input_pos : b->last_offset;
     node->line = start ? (uint32_t)start->line + 1 : b->last_line;
     if (++b->nodes > LR_NODES_MAX) {
-        lr_report_add(b->report, node->offset,
-                      "the scene has more than %d values; bulk geometry belongs in mesh files",
-                      LR_NODES_MAX);
+        lr_report_add(b->report, node->offset, "the %s has more than %d values; %s",
+                      b->report->language->subject, LR_NODES_MAX, b->report->language->relief);
         stop(b);
     }
     return node;
@@ -354,7 +353,8 @@ static void refuse_tag(builder *b, struct fy_event *event)
         return;
     const struct fy_mark *start = fy_token_start_mark(tag);
     lr_report_add(b->report, start ? start->input_pos : b->last_offset,
-                  "tags (!name) are not part of the scene language; remove it");
+                  "tags (!name) are not part of the %s language; remove it",
+                  b->report->language->subject);
 }
 
 static void take_event(builder *b, struct fy_event *event)
@@ -373,7 +373,8 @@ static void take_event(builder *b, struct fy_event *event)
         if (++b->documents == 2) {
             const struct fy_mark *mark = fy_event_start_mark(event);
             lr_report_add(b->report, mark ? mark->input_pos : b->last_offset,
-                          "a second document starts here, expected one scene in a file");
+                          "a second document starts here, expected one %s in a file",
+                          b->report->language->subject);
             stop(b);
         }
         break;
@@ -458,6 +459,6 @@ void lr_tree_read(lr_tree *tree, lr_report *report)
     if (b.stopped)
         tree->root = NULL;
     else if (!tree->root && !lr_report_failed(report))
-        lr_report_add(report, 0,
-                      "the file holds no scene, expected keys such as camera and objects");
+        lr_report_add(report, 0, "the file holds no %s, expected keys such as %s",
+                      report->language->subject, report->language->examples);
 }

@@ -1,4 +1,4 @@
-/* The YAML text as a tree of positioned nodes. libfyaml parses; what the scene language does not
+/* The YAML text as a tree of positioned nodes. libfyaml parses; what our languages do not
  * allow (tags, merge keys, several documents, duplicate keys, endless nesting) is refused here. */
 #ifndef LR_SCENE_NODE_H
 #define LR_SCENE_NODE_H

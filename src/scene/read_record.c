@@ -34,6 +34,9 @@ void lr_record_defaults(const lr_record *record, void *base)
         case LR_FIELD_ROTATE:
             *(lr_transform *)(void *)out = lr_transform_identity();
             break;
+        case LR_FIELD_TEXT:
+            *(const char **)(void *)out = NULL;
+            break;
         default:
             break;
         }
@@ -45,10 +48,10 @@ const lr_node *lr_given_value(const lr_given *given, const lr_record *record, co
     return given->values[lr_field_index(record, name)];
 }
 
-/* Types up to LR_FIELD_ROTATE are stored by the reader of values; the enum says so. */
+/* Types up to LR_FIELD_TEXT are stored by the reader of values; the enum says so. */
 static bool is_stored(const lr_field *field)
 {
-    return field->type <= LR_FIELD_ROTATE;
+    return field->type <= LR_FIELD_TEXT;
 }
 
 /* The field that `name:value` without a space means, NULL when it is no such thing. */

@@ -37,7 +37,7 @@ const char *lr_node_describe(const lr_node *node, char buffer[LR_SHOWN_MAX + 32]
 }
 
 /* `radius:1` as a value: text with a known key before the colon. */
-static bool is_missing_space(const lr_node *node)
+static bool is_missing_space(const lr_reader *reader, const lr_node *node)
 {
     const char *colon = node->kind == LR_NODE_PLAIN ? strchr(node->text, ':') : NULL;
     char word[32];
@@ -45,7 +45,7 @@ static bool is_missing_space(const lr_node *node)
         return false;
     memcpy(word, node->text, (size_t)(colon - node->text));
     word[colon - node->text] = '\0';
-    return lr_key_is_known(word);
+    return reader->report->language->knows_key(word);
 }
 
 void lr_report_type(lr_reader *reader, const lr_node *node, const char *what, const char *expected)
@@ -64,7 +64,7 @@ void lr_report_type(lr_reader *reader, const lr_node *node, const char *what, co
                       "%s is empty, because an unquoted # starts a comment; quote the colour: "
                       "\"%.*s\"",
                       what, (int)digits + 1, report->text + hash);
-    else if (is_missing_space(node))
+    else if (is_missing_space(reader, node))
         lr_report_add(report, node->offset,
                       "%s is the text \"%s\", expected %s; put a space after the colon", what,
                       lr_node_describe(node, described), expected);
@@ -258,6 +258,19 @@ static bool read_choice(lr_reader *reader, const lr_node *node, const lr_field *
     return false;
 }
 
+static bool read_text(lr_reader *reader, const lr_node *node, const lr_field *field,
+                      const char **value)
+{
+    bool scalar = node->kind == LR_NODE_PLAIN || node->kind == LR_NODE_QUOTED;
+    if (!scalar || node->count == 0 || strlen(node->text) != node->count) {
+        char expected[LR_EXPECTED_MAX];
+        lr_report_type(reader, node, field->name, lr_field_expected(field, expected));
+        return false;
+    }
+    *value = node->text;
+    return true;
+}
+
 /* Three numbers, named what.x or what[0] in messages by their letter. */
 static bool read_triple(lr_reader *reader, const lr_node *node, const lr_field *field,
                         const char *what, const char *letters, lr_vec3 *vector)
@@ -373,7 +386,7 @@ bool lr_read_color(lr_reader *reader, const lr_node *node, const lr_field *field
     if (lr_color_from_text(text, node->count, color))
         return true;
     lr_node_describe(node, described);
-    if (is_missing_space(node)) {
+    if (is_missing_space(reader, node)) {
         lr_report_type(reader, node, what, expected);
         return false;
     }
@@ -434,6 +447,8 @@ bool lr_read_value(lr_reader *reader, const lr_node *node, const lr_field *field
         return read_scale(reader, node, field, out);
     case LR_FIELD_ROTATE:
         return read_rotate(reader, node, field, out);
+    case LR_FIELD_TEXT:
+        return read_text(reader, node, field, out);
     default:
         return true;
     }

@@ -1,4 +1,4 @@
-/* The errors of one scene text: gathered by position, written out with the source line. */
+/* The errors of one text: gathered by position, written out with the source line. */
 #ifndef LR_SCENE_REPORT_H
 #define LR_SCENE_REPORT_H
 
@@ -13,8 +13,17 @@ typedef struct lr_problem {
     char *message;
 } lr_problem;
 
-/* The text and its name belong to the caller and outlive the report. */
+/* What a text is about, for messages: the scene language, or the settings of test cases. */
+typedef struct lr_language {
+    const char *subject;  /* "scene" */
+    const char *examples; /* keys of the top level: "camera and objects" */
+    const char *relief;   /* what to do about one that is too large */
+    bool (*knows_key)(const char *name);
+} lr_language;
+
+/* The text, its name and language belong to the caller and outlive the report. */
 typedef struct lr_report {
+    const lr_language *language;
     const char *name;
     const char *text;
     size_t length;

@@ -2,6 +2,7 @@
 #include "scene/read.h"
 
 #include "base/file.h"
+#include "base/hash.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -163,6 +164,13 @@ void lr_scene_destroy(lr_scene *scene)
     free(scene);
 }
 
+static const lr_language scene_language = {
+    .subject = "scene",
+    .examples = "camera and objects",
+    .relief = "bulk geometry belongs in mesh files",
+    .knows_key = lr_key_is_known,
+};
+
 /* Reads the report's text into the scene; what is wrong goes to the report. */
 static void read_text(lr_scene *scene, lr_report *report)
 {
@@ -195,6 +203,8 @@ lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_s
     read->source = lr_string_copy(name, strlen(name));
     if (!read->source)
         goto no_memory;
+    lr_hash_bytes(text, length, read->sha256);
+    problems->language = &scene_language;
     problems->name = name;
     problems->text = text;
     problems->length = length;

@@ -120,7 +120,8 @@ typedef struct lr_camera {
 } lr_camera;
 
 struct lr_scene {
-    char *source; /* the name that stands in messages */
+    char *source;    /* the name that stands in messages */
+    char sha256[65]; /* of the text */
     lr_camera *cameras;
     uint32_t camera_count; /* >= 1 */
     lr_material *materials;

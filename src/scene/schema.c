@@ -158,6 +158,15 @@ static json_t *field_schema(schema *s, const lr_field *field)
         node = put(s, typed(s, "array"), "items", reference(s, "object"));
         put(s, node, "minItems", json_integer(1));
         break;
+    case LR_FIELD_TEXT:
+        node = typed(s, "string");
+        break;
+    case LR_FIELD_TEXTS:
+        node = put(s, typed(s, "array"), "items", typed(s, "string"));
+        break;
+    case LR_FIELD_MAPPING:
+        node = typed(s, "object");
+        break;
     }
     put(s, node, "description", json_string(field->doc));
     if (fallback && !(field->flags & (LR_REQUIRED | LR_DERIVED)))

@@ -24,10 +24,9 @@ static bool report_bad_byte(lr_report *report, size_t offset)
 bool lr_text_check(lr_report *report)
 {
     if (report->length > LR_TEXT_MAX) {
-        lr_report_add(report, 0,
-                      "the scene text has %zu bytes, more than the limit of %u (16 MiB); bulk "
-                      "geometry belongs in mesh files",
-                      report->length, LR_TEXT_MAX);
+        lr_report_add(
+            report, 0, "the %s text has %zu bytes, more than the limit of %u (16 MiB); %s",
+            report->language->subject, report->length, LR_TEXT_MAX, report->language->relief);
         return false;
     }
     const char *text = report->text;
@@ -164,7 +163,7 @@ static bool explain_missing_space(lr_report *report, line at)
         return false;
     memcpy(word, report->text + begin, length);
     word[length] = '\0';
-    if (!lr_key_is_known(word))
+    if (!report->language->knows_key(word))
         return false;
     size_t end = i + 1;
     while (end < at.end && end - i < 24 && !isspace((unsigned char)report->text[end]) &&

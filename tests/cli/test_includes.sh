@@ -17,8 +17,9 @@ may_include() {
     image) echo image base ;;
     compare) echo compare image base ;;
     render) echo render scene bvh gpu image base ;;
+    tester) echo tester compare scene image base ;;
     preview) echo preview render scene bvh gpu image base ;;
-    cli) echo cli preview render scene bvh gpu compare image base ;;
+    cli) echo cli tester preview render scene bvh gpu compare image base ;;
     esac
 }
 
@@ -32,6 +33,9 @@ for folder in src/*/; do
         lavaray.h) ;;
         gpu_layout.h | *.spv.h) # what host and kernels share
             case $name in gpu | render) ;; *) problem "$file includes $included" ;; esac
+            ;;
+        report.html.h) # the page of the tester
+            case $name in tester) ;; *) problem "$file includes $included" ;; esac
             ;;
         */*)
             case " $allowed " in
@@ -61,7 +65,7 @@ only GLFW/ preview
 only libfyaml scene
 only png image
 only OpenEXR/ image
-only jansson cli scene
+only jansson cli scene tester
 
 # The public header stands alone.
 if grep -qE '#[[:space:]]*include[[:space:]]*"' src/lavaray.h; then

@@ -1,0 +1,10 @@
+/* SHA-256 as text. */
+#ifndef LR_BASE_HASH_H
+#define LR_BASE_HASH_H
+
+#include <stddef.h>
+
+/* The hash of size bytes as 64 lower-case hexadecimal digits. */
+void lr_hash_bytes(const void *bytes, size_t size, char hash[65]);
+
+#endif
