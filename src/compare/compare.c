@@ -138,7 +138,8 @@ static lr_status explain(const compare_pair *pair, const lr_compare_options *opt
         status = make_map(pair, result, error);
     if (options->explain && result->different) {
         if (status == LR_OK)
-            status = compare_regions(pair, options, result->map, result, error);
+            status =
+                compare_regions(pair, options, result->map, wants_flip(options), result, error);
         if (status == LR_OK && result->metrics[LR_METRIC_NOISE].pass)
             result->cause = LR_CAUSE_NOISE; /* as it was tested */
         else if (status == LR_OK)

@@ -57,9 +57,10 @@ float compare_select(const float *values, size_t count, size_t rank);
 /* The mean structural similarity of the compared pixels. */
 lr_status compare_ssim(const compare_pair *pair, double *similarity, lr_error *error);
 
-/* Finds the regions that differ; errors are the map's values. */
+/* Finds the regions that differ; errors are those of the pixels, FLIP's or plain differences. */
 lr_status compare_regions(const compare_pair *pair, const lr_compare_options *options,
-                          const float *errors, lr_compare_result *result, lr_error *error);
+                          const float *errors, bool flip, lr_compare_result *result,
+                          lr_error *error);
 
 /* Finds the cause of a difference that there is. */
 lr_status compare_explain(const compare_pair *pair, lr_compare_result *result, lr_error *error);

@@ -1,6 +1,5 @@
 /* The separate places where two pictures differ. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
 #include "compare/compare_internal.h"
@@ -125,11 +124,11 @@ static void keep_region(lr_compare_result *result, const lr_region *region)
 }
 
 lr_status compare_regions(const compare_pair *pair, const lr_compare_options *options,
-                          const float *errors, lr_compare_result *result, lr_error *error)
+                          const float *errors, bool flip, lr_compare_result *result,
+                          lr_error *error)
 {
     size_t count = (size_t)pair->width * pair->height;
     flood f = {.width = pair->width, .height = pair->height};
-    bool flip = strcmp(result->map_name, "FLIP") == 0;
     f.marks = lr_alloc(count, 1);
     f.stack = lr_alloc(count, sizeof *f.stack);
     lr_status status = LR_OK;

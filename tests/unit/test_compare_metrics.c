@@ -406,6 +406,68 @@ static void test_settings(void **state)
     assert_string_equal(lr_metric_name(LR_METRIC_FLIP_P99), "flip-p99");
 }
 
+static uint32_t next(uint32_t *seed)
+{
+    *seed = *seed * 747796405u + 2891336453u;
+    return *seed >> 8;
+}
+
+static lr_image make_random(float *samples, uint32_t width, uint32_t height, uint32_t *seed)
+{
+    static const uint32_t maxvals[] = {0, 1, 255, 1000, 65535};
+    static const float odd[] = {NAN, INFINITY, -INFINITY, -1, 1e30f, -0.0f};
+    lr_image image = {.width = width,
+                      .height = height,
+                      .channels = 1 + next(seed) % 4,
+                      .maxval = maxvals[next(seed) % 5],
+                      .samples = samples};
+    uint32_t flat = next(seed) % 3;
+    for (uint32_t i = 0; i < width * height * image.channels; i++) {
+        uint32_t value = flat ? flat * 100 : next(seed);
+        samples[i] = image.maxval      ? (float)(value % (image.maxval + 1)) / (float)image.maxval
+                     : next(seed) % 50 ? (float)value / 1e6f
+                                       : odd[next(seed) % 6];
+    }
+    return image;
+}
+
+/* Pictures of all kinds and small sizes through everything: a picture is the same as itself, values
+ * are numbers, and what is said agrees with what is found. */
+static void test_anything(void **state)
+{
+    (void)state;
+    uint32_t seed = 5;
+    for (int trial = 0; trial < 400; trial++) {
+        uint32_t width = 1 + next(&seed) % SIZE, height = 1 + next(&seed) % SIZE;
+        lr_image a = make_random(reference_samples, width, height, &seed);
+        lr_image b = make_random(test_samples, width, height, &seed);
+        lr_image mask = make_random(mask_samples, width, height, &seed);
+        lr_compare_options options = {.explain = true, .map = true, .ppd = 1 + next(&seed) % 100};
+        for (int i = 0; i < LR_METRIC_COUNT; i++)
+            options.wanted[i] = i != LR_METRIC_NOISE || trial % 5 == 0;
+        options.test_variance = trial % 5 == 0 ? &mask : NULL;
+        options.mask = trial % 3 == 0 ? &mask : NULL;
+        lr_compare_result result = compare(&a, &b, &options);
+        assert_true(result.pass || result.different);
+        assert_true(result.different == (result.different_pixels > 0));
+        assert_true(result.different == (result.cause != LR_CAUSE_NONE));
+        for (int i = 0; i < LR_METRIC_COUNT; i++)
+            assert_false(isnan(result.metrics[i].value));
+        char text[512];
+        lr_compare_describe(&result, text, sizeof text);
+        lr_picture picture;
+        assert_int_equal(lr_compare_heat_map(&a, &result, &picture, NULL), LR_OK);
+        lr_picture_free(&picture);
+        lr_compare_result_free(&result);
+
+        memset(options.limits, 0, sizeof options.limits);
+        options.wanted[LR_METRIC_NOISE] = false;
+        result = compare(&a, &a, &options);
+        assert_true(result.pass && !result.different);
+        lr_compare_result_free(&result);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -421,6 +483,7 @@ int main(void)
         cmocka_unit_test(test_percentile),
         cmocka_unit_test(test_sizes),
         cmocka_unit_test(test_settings),
+        cmocka_unit_test(test_anything),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
