@@ -4,6 +4,7 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 // Makes the camera rays of a tile, one sample a workgroup layer, into the first queue.
 #include "gpu_layout.h"
+#include "batch.glsl"
 #include "bindings.glsl"
 #include "camera.glsl"
 #include "queue.glsl"
@@ -14,12 +15,14 @@ void main()
 {
     uint y_group = spread_group(gl_WorkGroupID.y, gl_NumWorkGroups.y);
     uvec2 at = uvec2(gl_GlobalInvocationID.x, y_group * uint(LR_TILE_GROUP) + gl_LocalInvocationID.y);
-    if (at.x >= work.tile_width || at.y >= work.tile_height)
+    bool wanted = at.x < work.tile_width && at.y < work.tile_height;
+    COUNT(counters.made, uint(wanted))
+    if (!wanted)
         return;
     uvec2 pixel = uvec2(work.tile_x, work.tile_y) + at;
     vec2 position = vec2(pixel) + sample_position(pixel, work.first_sample + gl_WorkGroupID.z);
     uint in_tile = at.y * work.tile_width + at.x;
-    uint slot = atomicAdd(counters.made, 1u);
+    uint slot = gl_WorkGroupID.z * (work.tile_width * work.tile_height) + in_tile;
     store_ray(slot, gpu_ray(frame.origin, in_tile, camera_direction(position),
                             LR_KIND_PRIMARY << LR_STATE_KIND_SHIFT, vec3(1.0), 0u, frame.inside0,
                             frame.inside1, frame.inside2, frame.inside3));

@@ -32,19 +32,21 @@ uvec2 film_fixed(float value)
     uint by = uint(left < 0 ? -left : left);
     uint shifted = m << (by & 31u);
     uint spill = (m >> 1) >> ((31u - by) & 31u); // m >> (32 - by), right for by = 0 too
-    uvec2 up = by < 32u ? uvec2(shifted, spill) : uvec2(0u, shifted);
-    uvec2 down = uvec2(by < 32u ? m >> (by & 31u) : 0u, 0u);
-    uvec2 fixed_point = left < 0 ? down : up;
-    return left > 40 ? uvec2(0xFFFFFFFFu) : fixed_point;
+    // By mix, since glslang makes branches of conditional expressions.
+    uvec2 up = mix(uvec2(0u, shifted), uvec2(shifted, spill), bvec2(by < 32u));
+    uvec2 down = uvec2(mix(0u, m >> (by & 31u), by < 32u), 0u);
+    uvec2 fixed_point = mix(up, down, bvec2(left < 0));
+    return mix(fixed_point, uvec2(0xFFFFFFFFu), bvec2(left > 40));
 }
 
 void film_accumulate(inout film_sum sum, vec3 value)
 {
-    bool finite = ex_is_finite(value.x) && ex_is_finite(value.y) && ex_is_finite(value.z);
-    sum.non_finite += finite ? 0u : 1u;
-    bool above = value.x >= LR_FILM_MAX || value.y >= LR_FILM_MAX || value.z >= LR_FILM_MAX;
-    sum.saturated += finite && above ? 1u : 0u;
-    vec3 kept = finite ? max(value, vec3(0.0)) : vec3(0.0);
+    uvec3 exponents = floatBitsToUint(value) & 0x7F800000u;
+    bool finite = all(notEqual(exponents, uvec3(0x7F800000u)));
+    sum.non_finite += uint(!finite);
+    bool above = any(greaterThanEqual(value, vec3(LR_FILM_MAX)));
+    sum.saturated += uint(finite) & uint(above);
+    vec3 kept = mix(vec3(0.0), max(value, vec3(0.0)), bvec3(finite));
     uvec2 r = film_fixed(kept.x), g = film_fixed(kept.y), b = film_fixed(kept.z);
     uvec3 low = uvec3(r.x, g.x, b.x), high = uvec3(r.y, g.y, b.y);
     uvec3 new_low = sum.low + low;

@@ -28,7 +28,7 @@ vec3 left_by(shadow_rays rays, uint i)
         vec3 bits = vec3(depth) * LR_SHADOW_BITS;
         left = vec3(ex_exp2(bits.x), ex_exp2(bits.y), ex_exp2(bits.z));
     }
-    return vec3(dark.x ? 0.0 : left.x, dark.y ? 0.0 : left.y, dark.z ? 0.0 : left.z);
+    return mix(left, vec3(0.0), dark);
 }
 
 // Adds the light of up to four sources from number `first`.
@@ -50,14 +50,15 @@ void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m,
             light = load_light(first + l);
         arriving_light arriving = sample_light(light, s.position);
         vec3 value = weight * (arriving.color * classic_light(m, color, n, wo, arriving.wi));
-        if (lit && (value.x > 0.0 || value.y > 0.0 || value.z > 0.0)) {
-            red = replaced(red, rays.count, value.x);
-            green = replaced(green, rays.count, value.y);
-            blue = replaced(blue, rays.count, value.z);
-            bool shadows = (light.flags & LR_GPU_LIGHT_SHADOWS) != 0u;
-            add_ray(rays, shadow_ray(light, origin), shadows);
-            shadowed += shadows ? 1u : 0u;
-        }
+        bool reaches = lit && (value.x > 0.0 || value.y > 0.0 || value.z > 0.0);
+        uint slot = reaches ? rays.count : no_slot;
+        red = replaced(red, slot, value.x);
+        green = replaced(green, slot, value.y);
+        blue = replaced(blue, slot, value.z);
+        uint shadows = (light.flags & LR_GPU_LIGHT_SHADOWS) != 0u ? 1u : 0u;
+        set_ray(rays, slot, shadow_ray(light, origin), shadows);
+        rays.count += reaches ? 1u : 0u;
+        shadowed += reaches ? shadows : 0u;
         l++;
         if (l >= count)
             break;

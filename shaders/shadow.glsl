@@ -23,34 +23,38 @@ shadow_rays shadow_rays_none()
                        uvec4(0u), uvec4(0u));
 }
 
+// Component i of v. By mix, since glslang makes branches of nested conditional expressions.
 float pick(vec4 v, uint i)
 {
-    return i == 0u ? v.x : (i == 1u ? v.y : (i == 2u ? v.z : v.w));
+    return mix(mix(v.w, v.z, i == 2u), mix(v.y, v.x, i == 0u), i < 2u);
 }
 
 uint pick(uvec4 v, uint i)
 {
-    return i == 0u ? v.x : (i == 1u ? v.y : (i == 2u ? v.z : v.w));
+    return mix(mix(v.w, v.z, i == 2u), mix(v.y, v.x, i == 0u), i < 2u);
+}
+
+// v with `by` as its component i.
+vec4 replaced(vec4 v, uint i, float by)
+{
+    return mix(v, vec4(by), equal(uvec4(i), uvec4(0u, 1u, 2u, 3u)));
 }
 
 uvec4 replaced(uvec4 v, uint i, uint by)
 {
-    return uvec4(i == 0u ? by : v.x, i == 1u ? by : v.y, i == 2u ? by : v.z, i == 3u ? by : v.w);
+    return mix(v, uvec4(by), equal(uvec4(i), uvec4(0u, 1u, 2u, 3u)));
 }
 
-vec4 replaced(vec4 v, uint i, float by)
-{
-    return vec4(i == 0u ? by : v.x, i == 1u ? by : v.y, i == 2u ? by : v.z, i == 3u ? by : v.w);
-}
+// Selects instead of branches: this is cheap where every branch is paid for.
+const uint no_slot = 4u;
 
-void add_ray(inout shadow_rays rays, vec4 ray, bool shadowed)
+void set_ray(inout shadow_rays rays, uint slot, vec4 ray, uint shadowed)
 {
-    rays.x = replaced(rays.x, rays.count, ray.x);
-    rays.y = replaced(rays.y, rays.count, ray.y);
-    rays.z = replaced(rays.z, rays.count, ray.z);
-    rays.t_max = replaced(rays.t_max, rays.count, ray.w);
-    rays.shadowed = replaced(rays.shadowed, rays.count, shadowed ? 1u : 0u);
-    rays.count++;
+    rays.x = replaced(rays.x, slot, ray.x);
+    rays.y = replaced(rays.y, slot, ray.y);
+    rays.z = replaced(rays.z, slot, ray.z);
+    rays.t_max = replaced(rays.t_max, slot, ray.w);
+    rays.shadowed = replaced(rays.shadowed, slot, shadowed);
 }
 
 bool crosses(vec2 crossing, float t_max)
@@ -115,6 +119,12 @@ bool dim_solid(inout shadow_rays rays, uint l, uint i, vec3 o, vec3 d, float t_m
     return dim(rays, l, intersect_solid(o, d, s, i), t_max, s.object, s.flags);
 }
 
+// The first component that is not 0, or 3.
+uint first_of(uvec4 v)
+{
+    return mix(mix(mix(3u, 2u, v.z != 0u), 1u, v.y != 0u), 0u, v.x != 0u);
+}
+
 // Runs `test` on each candidate i of one kind for each ray l: every invocation goes through its own
 // pairs of the two, so few rounds serve all of them. Loops end at their bottom, as in trace.glsl.
 #define FOR_EACH_PAIR(kind_bits, test)                                                             \
@@ -122,7 +132,7 @@ bool dim_solid(inout shadow_rays rays, uint l, uint i, vec3 o, vec3 d, float t_m
         uvec4 left = bits & (kind_bits);                                                           \
         if (left != uvec4(0u))                                                                     \
             for (;;) {                                                                             \
-                uint l = left.x != 0u ? 0u : (left.y != 0u ? 1u : (left.z != 0u ? 2u : 3u));       \
+                uint l = first_of(left);                                                                 \
                 uint mine = pick(left, l), i = first + lowest_bit(mine);                           \
                 vec3 d = vec3(pick(rays.x, l), pick(rays.y, l), pick(rays.z, l));                  \
                 float t_max = pick(rays.t_max, l);                                                 \
