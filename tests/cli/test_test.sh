@@ -203,6 +203,32 @@ expect 0 "$tool" test --reference reference --candidate candidate -k below/other
 same reference/below/other.pgm candidate/below/other.pgm
 [ ! -e reference/new.pgm ] || problem 'a case was accepted that was not asked for'
 
+# The comparison is a process of its own: it ends by a signal or its time limit without the others.
+rm -rf reference candidate
+for folder in reference candidate; do
+    picture $folder/quick.pgm 1
+    { printf 'P5 4000 4000 255\n'; head -c 16000000 /dev/zero | tr '\0' $folder; } >$folder/slow.pgm
+done
+echo 'cases: {slow.pgm: {compare: {flip-mean: 1}}}' >slow.yaml
+"$tool" test --reference reference --candidate candidate --settings slow.yaml --jobs 1 --json out.json \
+    --update --report page.html >out 2>err &
+tester=$!
+for _ in $(seq 500); do
+    grep -qs '^passed *quick' out && comparison=$(pgrep -P $tester) && break
+    sleep 0.02
+done
+kill -SEGV "${comparison:-none}"
+wait $tester
+[ $? -eq 1 ] || problem 'not exit code 1 after a comparison crashed'
+is quick.pgm passed
+is slow.pgm broken
+says out 'comparing the pictures ended by signal 11 \(Segmentation fault\)'
+[ "$(head -c 30 reference/slow.pgm | tail -c 1)" = r ] || problem 'a picture that was never compared was accepted'
+expect 1 "$tool" test --reference reference --candidate candidate --settings slow.yaml --timeout 0.2 --json out.json
+is quick.pgm passed
+is slow.pgm broken
+says out 'comparing the pictures was ended after the time limit of 0.2 s'
+
 # Ctrl-C: ends what runs, says so, leaves nothing.
 tests "cases: {slow: {run: [sh, -c, 'sleep $nap; : {output}']}}"
 timeout --preserve-status -s INT 1 "$tool" test t >out 2>err
