@@ -50,6 +50,7 @@ for bad in short.ppm missing.ppm .; do
     says err "$bad"
 done
 expect 2 "$lavaray" compare "$a" "$b" --mask "$work/small.ppm" && says err 'small\.ppm: has 64 x 47 pixels, but .*a\.ppm has 64 x 48'
+expect 2 "$lavaray" compare "$a" "$b" --ignore 0,0,64,48 && one_line && says err 'nothing is left to compare'
 expect 5 "$lavaray" compare "$a" "$b" --mask "$work/missing.ppm"
 
 # JSON.
