@@ -137,7 +137,6 @@ static bool check_end(const slot *s)
 {
     const lr_process *p = &s->process;
     lr_case_result *result = s->result;
-    struct stat info;
     if (p->timed_out)
         lr_judge_broken(result, "ended after the time limit of %g s", p->limit);
     else if (WIFSIGNALED(p->status))
@@ -145,7 +144,7 @@ static bool check_end(const slot *s)
                         strsignal(WTERMSIG(p->status)));
     else if (WEXITSTATUS(p->status) != 0)
         lr_judge_broken(result, "the command failed with exit code %d", WEXITSTATUS(p->status));
-    else if (stat(s->output, &info) != 0)
+    else if (!lr_is_file(s->output)) /* nothing, or a folder or pipe */
         lr_judge_broken(result, "the command wrote no picture to %s",
                         result->item->settings.run ? "{output}" : s->output);
     else

@@ -126,6 +126,8 @@ tests 'cases:' "$(case_of one)" \
     '  fails: {run: [sh, -c, "echo sorry >&2; exit 7", "{output}"]}' \
     '  leaves: {run: [sh, -c, "sleep '"$nap"' & cp pictures/one.pgm $0", "{output}"], format: pgm}' \
     '  silent: {run: ["true", "{output}"]}' \
+    '  folder: {run: [mkdir, "{output}"]}' \
+    '  pipe: {run: [mkfifo, "{output}"]}' \
     '  half: {run: [sh, -c, "printf P2 >$0; kill $$", "{output}"]}' \
     '  absent: {run: [./no-such-program, "{output}"]}'
 mkdir t/golden
@@ -134,7 +136,7 @@ cp pictures/one.pgm t/golden/leaves.pgm
 expect 1 timeout 60 "$tool" test t --jobs 8 --json out.json
 is one passed
 is leaves passed
-for name in crash hang stubborn fails silent half absent; do
+for name in crash hang stubborn fails silent folder pipe half absent; do
     is $name broken
 done
 says out 'ended by signal 11 \(Segmentation fault\)'
