@@ -95,6 +95,11 @@ says out 'not a picture'
 grep -q P2 t/golden/one.pgm || problem 'a golden was replaced by rubbish'
 picture pictures/one.pgm 100
 
+# The folder that we are in, also as one of two.
+(cd t && "$tool" test . --list && cd golden && "$tool" test --reference . --candidate . --list) >out
+[ "$(xargs <out)" = 'five four one three two five.pgm four.pgm one.pgm three.pgm two.pgm' ] ||
+    problem "in the folder itself there are $(xargs <out)"
+
 # Selecting cases.
 expect 0 "$tool" test t -k two --list
 [ "$(cat out)" = two ] || problem 'the name selects more than its case'
