@@ -46,7 +46,8 @@ tests cases: "$five"
 expect 1 "$tool" test t --json out.json
 is one missing
 says out '^missing +one'
-says out 'lavaray test t -k five --update'
+says out 'lavaray test t -k five --update$'
+says out 'lavaray test t --update-missing$'
 same lavaray-test/candidate/one.pgm pictures/one.pgm
 [ ! -e t/golden ] || problem 'goldens were written without being asked for'
 expect 1 "$tool" test t --ci
