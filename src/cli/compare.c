@@ -30,7 +30,10 @@ static const option options[] = {
      .kind = OPTION_TEXT,                                                                          \
      .offset = offsetof(values, limits) + LR_METRIC_##id * sizeof(const char *),                   \
      .value = stands,                                                                              \
-     .help = text},
+     .help = text,                                                                                 \
+     .also = LR_METRIC_##id == LR_METRIC_ABS       ? "fail"                                        \
+             : LR_METRIC_##id == LR_METRIC_MAX_ABS ? "hardfail|hard-fail"                          \
+                                                   : NULL},
     LR_LIMITS(X)
 #undef X
         {.name = "abs-percent",

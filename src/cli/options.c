@@ -159,12 +159,14 @@ static parse_result store_value(const command *self, const option *o, const char
         break;
     case OPTION_REPEATED: {
         option_texts *texts = (option_texts *)target;
-        good = *text != '\0' && texts->count < OPTION_REPEATED_MAX;
-        if (good) {
-            texts->items[texts->count++] = text;
+        if (texts->count == OPTION_REPEATED_MAX) {
+            print_error("--%s is given more than %d times; see lavaray %s --help", o->name,
+                        OPTION_REPEATED_MAX, self->name);
+            return PARSE_ERROR;
         }
-        snprintf(expected, sizeof expected, "a text that is not empty, at most %d times",
-                 OPTION_REPEATED_MAX);
+        good = *text != '\0';
+        snprintf(expected, sizeof expected, "a text that is not empty");
+        texts->items[texts->count++] = text;
         break;
     }
     case OPTION_CHOICE:

@@ -269,7 +269,7 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
         fprintf(out, ", camera %.200s", v->camera);
     }
     if (encoding->exposure != 0) {
-        fprintf(out, ", exposure %.9g", (double)encoding->exposure);
+        fprintf(out, ", exposure %.7g", (double)encoding->exposure);
     }
     if (encoding->format == LR_FORMAT_PNG && encoding->transfer == LR_TRANSFER_LINEAR) {
         fputs(", linear", out);

@@ -264,6 +264,16 @@ static void describe_cpu(char *text, size_t size)
     snprintf(text, size, "%s, %ld processor%s", model, count, count == 1 ? "" : "s");
 }
 
+/* The folder as the user calls it; of "." and the like the name that it has. */
+static const char *title_of(const char *folder, char path[PATH_MAX])
+{
+    if (folder[strspn(folder, "./")] || !realpath(folder, path)) {
+        return folder;
+    }
+    const char *slash = strrchr(path, '/');
+    return slash && slash[1] ? slash + 1 : path;
+}
+
 /* The command line that runs the same tests; `words` has room for 16. */
 static void repeat_words(const values *v, const char *folder, char timeout[32], const char **words)
 {
@@ -341,7 +351,7 @@ static int write_reports(const values *v, const lr_results *results)
 static int run_cases(const values *v, const char *folder, const lr_case *const *cases,
                      uint32_t count)
 {
-    char program[PATH_MAX], cpu[300], timeout[32];
+    char program[PATH_MAX], title[PATH_MAX], cpu[300], timeout[32];
     const char *words[16];
     if (!find_self(program)) {
         return EXIT_DEVICE;
@@ -377,7 +387,7 @@ static int run_cases(const values *v, const char *folder, const lr_case *const *
                       .count = count,
                       .words = words,
                       .cpu = cpu,
-                      .title = folder ? folder : v->candidate,
+                      .title = title_of(folder ? folder : v->candidate, title),
                       .started = time(NULL)};
     catch_interrupts();
     lr_error error = {0};

@@ -109,6 +109,11 @@ static void print_accept(const test_view *view, const lr_results *results, const
     }
     fprintf(view->out, "  %s\n", accept ? accept : "");
     free(accept);
+    if (lr_results_count(results, LR_OUTCOME_MISSING) > 1) {
+        char *all = lr_shell_text(results->words);
+        fprintf(view->out, "or all that are missing:\n  %s --update-missing\n", all ? all : "");
+        free(all);
+    }
 }
 
 void test_view_summary(const test_view *view, const lr_results *results, const char *output)

@@ -128,15 +128,6 @@ static uint32_t count_groups(unsigned char *blocks, uint32_t columns, uint32_t r
     return groups;
 }
 
-static bool differs(const compare_pair *pair, size_t pixel)
-{
-    size_t first = pixel * pair->stride;
-    for (uint32_t c = 0; c < pair->colors + pair->alpha; c++)
-        if (pair->reference[first + c] != pair->test[first + c])
-            return true;
-    return false;
-}
-
 /* Few places, and less than half of the picture. */
 static bool is_local(const cause_view *view, lr_compare_result *result, bool *out_of_memory)
 {
@@ -149,7 +140,7 @@ static bool is_local(const cause_view *view, lr_compare_result *result, bool *ou
     }
     for (uint32_t y = 0; y < view->height; y++)
         for (uint32_t x = 0; x < view->width; x++)
-            if (differs(view->pair, (size_t)y * view->width + x))
+            if (compare_largest(view->pair, (size_t)y * view->width + x) > 0)
                 blocks[(y / BLOCK) * columns + x / BLOCK] = 1;
     for (uint32_t i = 0; i < columns * rows; i++)
         marked += blocks[i];

@@ -41,13 +41,10 @@ static lr_status pool_flip(const compare_pair *pair, const float *map, lr_compar
             sum += map[i];
             largest = map[i] > largest ? map[i] : largest;
         }
-    if (kept > 0) {
-        /* The nearest rank: at least 99 % of the pixels stay within. */
-        size_t rank = kept - kept / 100;
-        result->metrics[LR_METRIC_FLIP_MEAN].value = sum / (double)kept;
-        result->metrics[LR_METRIC_FLIP_P99].value = compare_select(errors, kept, rank - 1);
-        result->metrics[LR_METRIC_FLIP_MAX].value = largest;
-    }
+    size_t rank = kept - kept / 100; /* the nearest: at least 99 % of the pixels stay within */
+    result->metrics[LR_METRIC_FLIP_MEAN].value = sum / (double)kept;
+    result->metrics[LR_METRIC_FLIP_P99].value = compare_select(errors, kept, rank - 1);
+    result->metrics[LR_METRIC_FLIP_MAX].value = largest;
     free(errors);
     return LR_OK;
 }

@@ -172,8 +172,8 @@ typedef struct lr_compare_result {
 } lr_compare_result;
 
 /* Compares. LR_OK whatever the outcome, also when the sizes differ; LR_ERROR_ARGUMENT for a mask,
- * variance or half of another size than the pictures, for NOISE without them, and for options out
- * of range; LR_ERROR_MEMORY. The caller frees the result. */
+ * variance or half of another size than the pictures, for NOISE without them, when no pixel is left
+ * to compare, and for options out of range; LR_ERROR_MEMORY. The caller frees the result. */
 lr_status lr_compare(const lr_image *reference, const lr_image *test,
                      const lr_compare_options *options, lr_compare_result *result, lr_error *error);
 void lr_compare_result_free(lr_compare_result *result);

@@ -18,10 +18,11 @@ typedef struct compare_pair {
     const float *reference, *test;
     float *owned[2];     /* copies, where the pictures' own samples would not do */
     unsigned char *used; /* 1 for pixels to compare; NULL: all */
-    uint64_t compared;
+    uint64_t compared;   /* their number, not 0 */
 } compare_pair;
 
-/* LR_ERROR_ARGUMENT when the mask has another size. The caller releases the pair in any case. */
+/* LR_ERROR_ARGUMENT when the mask has another size or nothing is left to compare. The caller
+ * releases the pair in any case. */
 lr_status compare_prepare(const lr_image *reference, const lr_image *test,
                           const lr_compare_options *options, compare_pair *pair, lr_error *error);
 void compare_release(compare_pair *pair);

@@ -90,8 +90,7 @@ static void add_pixel(const compare_pair *pair, const lr_compare_options *option
 static void put_share(lr_compare_result *result, lr_metric metric, uint64_t pixels)
 {
     result->metrics[metric].pixels = pixels;
-    result->metrics[metric].value =
-        result->compared ? 100.0 * (double)pixels / (double)result->compared : 0;
+    result->metrics[metric].value = 100.0 * (double)pixels / (double)result->compared;
 }
 
 void compare_pixels(const compare_pair *pair, const lr_compare_options *options,
@@ -103,7 +102,7 @@ void compare_pixels(const compare_pair *pair, const lr_compare_options *options,
             for (uint32_t x = 0; x < pair->width; x++)
                 add_pixel(pair, options, x, y, &s, result);
     double samples = (double)pair->compared * (pair->colors + pair->alpha);
-    double mse = samples > 0 ? s.square / samples : 0;
+    double mse = s.square / samples;
     put_share(result, LR_METRIC_EXACT, result->different_pixels);
     put_share(result, LR_METRIC_ABS, s.over_abs);
     put_share(result, LR_METRIC_REL, s.over_rel);
@@ -111,7 +110,7 @@ void compare_pixels(const compare_pair *pair, const lr_compare_options *options,
     result->metrics[LR_METRIC_MAX_REL].value = s.max_relative;
     result->metrics[LR_METRIC_MSE].value = mse;
     result->metrics[LR_METRIC_RMSE].value = sqrt(mse);
-    result->metrics[LR_METRIC_RELMSE].value = samples > 0 ? s.relative_square / samples : 0;
+    result->metrics[LR_METRIC_RELMSE].value = s.relative_square / samples;
     /* 10 log10(peak^2 / MSE) */
     result->metrics[LR_METRIC_PSNR].value =
         mse == 0     ? INFINITY

@@ -127,6 +127,9 @@ static lr_status exclude(const lr_compare_options *options, compare_pair *pair, 
             pair->compared--;
             memcpy(pair->owned[1] + i * pair->stride, pair->reference + i * pair->stride, size);
         }
+    if (pair->compared == 0) /* a test that can never fail, such as one with its mask inverted */
+        return lr_fail(error, LR_ERROR_ARGUMENT,
+                       "nothing is left to compare: all pixels are masked or ignored");
     return LR_OK;
 }
 

@@ -230,6 +230,56 @@ static void copy_chunk(const exr_input *exr, const exr_chunk_info_t *chunk, int6
     }
 }
 
+static float half_value(uint16_t half)
+{
+    uint32_t exponent = half >> 10 & 31, mantissa = half & 1023u, sign = (half & 0x8000u) << 16;
+    if (exponent == 0)
+        return (sign ? -1.0f : 1.0f) * (float)mantissa * 0x1p-24f;
+    uint32_t bits = sign | (exponent == 31 ? 255 : exponent + 112) << 23 | mantissa << 13;
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* Of a file's little-endian bytes. */
+static float sample_value(const uint8_t *bytes, uint16_t type)
+{
+    uint32_t bits = (uint32_t)(bytes[0] | bytes[1] << 8);
+    if (type == EXR_PIXEL_HALF)
+        return half_value((uint16_t)bits);
+    bits |= (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return type == EXR_PIXEL_UINT ? (float)bits : value;
+}
+
+/* Takes the channels that have a destination, in place of the library's own functions: those of
+ * OpenEXRCore 3.1 for halves write to channels without one and take subsampled ones for full. */
+static exr_result_t unpack(exr_decode_pipeline_t *decoder)
+{
+    const exr_chunk_info_t *chunk = &decoder->chunk;
+    const uint8_t *in = decoder->unpacked_buffer;
+    uint64_t left = chunk->unpacked_size;
+    for (int32_t y = 0; y < chunk->height; y++)
+        for (int i = 0; i < decoder->channel_count; i++) {
+            const exr_coding_channel_info_t *c = &decoder->channels[i];
+            size_t width = (size_t)c->width, bytes = (size_t)c->bytes_per_element;
+            if (c->y_samples > 1 && (chunk->start_y + y) % c->y_samples != 0)
+                continue;
+            if (width * bytes > left)
+                return EXR_ERR_CORRUPT_CHUNK;
+            float *out = (float *)(void *)c->decode_to_ptr;
+            if (out)
+                out += (size_t)y * (size_t)c->user_line_stride / sizeof *out;
+            for (size_t x = 0; out && x < width; x++)
+                out[x * (size_t)c->user_pixel_stride / sizeof *out] =
+                    sample_value(in + x * bytes, c->data_type);
+            in += width * bytes;
+            left -= width * bytes;
+        }
+    return EXR_ERR_SUCCESS;
+}
+
 static exr_result_t decode_chunk(const exr_input *exr, const exr_chunk_info_t *chunk, float *pixels)
 {
     uint32_t channels = exr->image->channels;
@@ -245,6 +295,8 @@ static exr_result_t decode_chunk(const exr_input *exr, const exr_chunk_info_t *c
             channel->user_line_stride = channel->user_pixel_stride * chunk->width;
         }
         code = exr_decoding_choose_default_routines(exr->context, 0, &decoder);
+        if (decoder.unpack_and_convert_fn) /* otherwise the chunk is read into its place */
+            decoder.unpack_and_convert_fn = unpack;
     }
     if (code == EXR_ERR_SUCCESS)
         code = exr_decoding_run(exr->context, 0, &decoder);

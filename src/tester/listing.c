@@ -18,6 +18,8 @@ enum { DEPTH_MAX = 32 }; /* of folders in folders */
 char *lr_join_path(const char *folder, const char *name)
 {
     size_t length = strlen(folder);
+    if (!name[0])
+        return lr_string_copy(folder, length);
     if (name[0] == '/' || strcmp(folder, ".") == 0)
         return lr_string_copy(name, strlen(name));
     return lr_format_text("%s%s%s", folder, length && folder[length - 1] == '/' ? "" : "/", name);

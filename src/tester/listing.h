@@ -17,8 +17,8 @@ lr_status lr_listing_read(lr_listing *listing, const char *folder, const char *c
                           bool deep, lr_error *error);
 void lr_listing_free(lr_listing *listing);
 
-/* "folder/name"; just the name when it is absolute or the folder is ".". NULL when memory is out.
- */
+/* "folder/name"; just the name when it is absolute or the folder is ".", and the folder when the
+ * name is empty. NULL when memory is out. */
 char *lr_join_path(const char *folder, const char *name);
 
 /* The bytes of path in front of its ending, "a/b" of "a/b.png". */

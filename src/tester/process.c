@@ -63,22 +63,69 @@ static int spawn(pid_t *pid, const char *const *argv, int output)
     return failed;
 }
 
-lr_status lr_process_start(lr_process *process, const char *const *argv, double limit,
-                           lr_error *error)
+/* Makes a pipe of which `process` reads one end; returns the other, -1 with errno set. */
+static int open_pipe(lr_process *process, double limit)
 {
     int ends[2];
     *process = (lr_process){.pipe = -1, .limit = limit, .start = lr_clock()};
     if (pipe2(ends, O_CLOEXEC) != 0)
-        return lr_fail(error, LR_ERROR_FILE, "cannot start %.300s: %s", argv[0], strerror(errno));
-    int failed = spawn(&process->pid, argv, ends[1]);
-    close(ends[1]);
-    if (failed) {
-        close(ends[0]);
-        process->pid = 0;
-        return lr_fail(error, LR_ERROR_FILE, "cannot start %.300s: %s", argv[0], strerror(failed));
-    }
+        return -1;
     fcntl(ends[0], F_SETFL, O_NONBLOCK);
     process->pipe = ends[0];
+    return ends[1];
+}
+
+static void close_pipe(lr_process *p)
+{
+    if (p->pipe >= 0)
+        close(p->pipe);
+    p->pipe = -1;
+}
+
+lr_status lr_process_start(lr_process *process, const char *const *argv, double limit,
+                           lr_error *error)
+{
+    int output = open_pipe(process, limit);
+    int failed = output < 0 ? errno : spawn(&process->pid, argv, output);
+    if (output >= 0)
+        close(output);
+    if (!failed)
+        return LR_OK;
+    close_pipe(process);
+    process->pid = 0;
+    return lr_fail(error, LR_ERROR_FILE, "cannot start %.300s: %s", argv[0], strerror(failed));
+}
+
+/* What spawn() does for commands: a group, no input, output to the pipe, no handlers of ours. */
+static void settle_child(int output)
+{
+    static const int handled[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
+    setpgid(0, 0);
+    for (size_t i = 0; i < sizeof handled / sizeof *handled; i++)
+        signal(handled[i], SIG_DFL);
+    int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (nothing < 0 || dup2(nothing, 0) < 0 || dup2(output, 1) < 0 || dup2(output, 2) < 0)
+        _exit(127);
+}
+
+lr_status lr_process_fork(lr_process *process, int (*work)(void *user), void *user, double limit,
+                          lr_error *error)
+{
+    int output = open_pipe(process, limit);
+    pid_t pid = output < 0 ? -1 : fork();
+    if (pid == 0) {
+        settle_child(output);
+        _exit(work(user)); /* buffers of stdio are the parent's */
+    }
+    int failed = errno;
+    if (output >= 0)
+        close(output);
+    if (pid < 0) {
+        close_pipe(process);
+        return lr_fail(error, LR_ERROR_FILE, "cannot start a process: %s", strerror(failed));
+    }
+    setpgid(pid, pid); /* whoever comes first: signals go to the group */
+    process->pid = pid;
     return LR_OK;
 }
 
@@ -118,10 +165,8 @@ static void drain(lr_process *p)
             keep(p, bytes, (size_t)got);
         else if (got < 0 && errno == EAGAIN)
             return;
-        else if (got == 0 || errno != EINTR) {
-            close(p->pipe);
-            p->pipe = -1;
-        }
+        else if (got == 0 || errno != EINTR)
+            close_pipe(p);
     }
 }
 
@@ -146,9 +191,7 @@ static void reap(lr_process *p)
     while (waitpid(p->pid, &p->status, 0) < 0 && errno == EINTR)
         continue;
     drain(p);
-    if (p->pipe >= 0)
-        close(p->pipe);
-    p->pipe = -1;
+    close_pipe(p);
     p->pid = 0;
     p->seconds = lr_clock() - p->start;
 }

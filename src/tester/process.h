@@ -1,5 +1,5 @@
-/* Commands in processes of their own, each with a time limit and its own process group, so that
- * what it started ends with it. */
+/* Commands and work in processes of their own, each with a time limit and its own process group, so
+ * that what it started ends with it. */
 #ifndef LR_TESTER_PROCESS_H
 #define LR_TESTER_PROCESS_H
 
@@ -26,6 +26,11 @@ typedef struct lr_process {
 /* Starts argv (NULL behind the last), found by PATH, with nothing to read. limit is in seconds. */
 lr_status lr_process_start(lr_process *process, const char *const *argv, double limit,
                            lr_error *error);
+
+/* Runs work(user) in a copy of this process, which must have no other threads; what it returns is
+ * the exit code. */
+lr_status lr_process_fork(lr_process *process, int (*work)(void *user), void *user, double limit,
+                          lr_error *error);
 
 /* Waits until one of the processes has something to say or `seconds` are over. */
 void lr_process_wait(lr_process *const *processes, size_t count, double seconds);

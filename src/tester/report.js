@@ -114,8 +114,10 @@ async function select(index, keep) {
   const badge = mark(c);
   badge.classList.add('badge');
   $('name').replaceChildren(c.name, badge);
+  const sentence = t => (/^[a-z]+ /.test(t) ? t[0].toUpperCase() + t.slice(1) : t) + // but no paths
+    (/[.!?]$/.test(t) ? '' : '.');
   $('words').replaceChildren(...[c.message, c.cause, c.staleness].filter(t => t)
-    .map(t => el('p', {textContent: t[0].toUpperCase() + t.slice(1) + (/[.!?]$/.test(t) ? '' : '.')})));
+    .map(t => el('p', {textContent: sentence(t)})));
   for (const button of $('list').querySelectorAll('button')) {
     const here = button.dataset.index === String(index);
     button.setAttribute('aria-current', here);

@@ -150,7 +150,8 @@ char *lr_results_html(const lr_results *results, lr_embed embed)
     json_t *object = lr_results_object(results);
     json_t *cases = json_object_get(object, "cases");
     for (uint32_t i = 0; i < results->count; i++)
-        if (embed == LR_EMBED_ALL || lr_outcome_failed(results->results[i].outcome))
+        if (!results->results[i].crashed &&
+            (embed == LR_EMBED_ALL || lr_outcome_failed(results->results[i].outcome)))
             embed_case(cases, i, &results->results[i]);
     char *data = json_dumps(object, JSON_COMPACT | JSON_ENSURE_ASCII);
     json_decref(object);

@@ -47,6 +47,7 @@ typedef struct lr_case_result {
     char *difference; /* the heat map */
     char *device, *driver;
     bool readable; /* the candidate is a picture: it may become the golden */
+    bool crashed;  /* the comparison did: nothing opens these pictures again */
     bool compared;
     lr_compare_result compare; /* without its map */
     lr_stamp golden_stamp, candidate_stamp;

@@ -7,6 +7,7 @@
 #include "tester/listing.h"
 #include "tester/process.h"
 #include "tester/text.h"
+#include "tester/trial.h"
 
 #include <errno.h>
 #include <jansson.h>
@@ -23,10 +24,13 @@ enum { LINES_KEPT = 12, PICTURE_BYTES_MAX = 1 << 30, STATS_BYTES_MAX = 1 << 20 }
 
 /* A place where one case at a time runs. */
 typedef struct slot {
-    lr_process process;
+    lr_process process;     /* the command, then the comparison */
     lr_case_result *result; /* NULL: the slot is free */
-    char *folder;           /* for this case alone, in the work folder */
+    char *folder;           /* for the command alone, in the work folder */
     char *output, *stats;   /* the files that the command writes there */
+    bool comparing;
+    lr_trial trial;
+    char *candidate, *difference; /* while comparing */
 } slot;
 
 typedef struct runner {
@@ -133,7 +137,6 @@ static bool check_end(const slot *s)
 {
     const lr_process *p = &s->process;
     lr_case_result *result = s->result;
-    struct stat info;
     if (p->timed_out)
         lr_judge_broken(result, "ended after the time limit of %g s", p->limit);
     else if (WIFSIGNALED(p->status))
@@ -141,7 +144,7 @@ static bool check_end(const slot *s)
                         strsignal(WTERMSIG(p->status)));
     else if (WEXITSTATUS(p->status) != 0)
         lr_judge_broken(result, "the command failed with exit code %d", WEXITSTATUS(p->status));
-    else if (stat(s->output, &info) != 0)
+    else if (!lr_is_file(s->output)) /* nothing, or a folder or pipe */
         lr_judge_broken(result, "the command wrote no picture to %s",
                         result->item->settings.run ? "{output}" : s->output);
     else
@@ -170,49 +173,75 @@ static void accept(const char *candidate, lr_case_result *result, lr_outcome out
     }
 }
 
-/* Compares a picture with its golden, or makes it the golden. */
-static void judge(const runner *r, const char *candidate, lr_case_result *result)
+static double limit_of(const runner *r, const lr_case *item)
 {
-    const lr_run_options *o = r->options;
-    char *difference = kept_path(r, "difference", result->item, ".png");
-    if (!difference) {
-        lr_judge_broken(result, "out of memory");
-        return;
-    }
-    lr_judge(candidate, difference, result);
-    if (result->outcome == LR_OUTCOME_MISSING && (o->update || o->update_missing))
-        accept(candidate, result, LR_OUTCOME_ADDED);
-    else if (lr_outcome_failed(result->outcome) && result->readable && o->update)
-        accept(candidate, result, LR_OUTCOME_UPDATED);
-    if (!lr_outcome_failed(result->outcome) && result->difference) {
-        remove_kept(r, difference);
-        free(result->difference);
-        result->difference = NULL;
-    }
-    free(difference);
+    return item->settings.timeout > 0 ? item->settings.timeout : r->options->timeout;
 }
 
-/* Judges the picture that the command wrote, in the place where it stays when it fails. */
-static void judge_output(const runner *r, const slot *s)
+/* Takes over the path of the picture. False when the comparison does not run; the result says why.
+ */
+static bool start_comparing(const runner *r, slot *s, char *candidate)
 {
-    lr_case_result *result = s->result;
+    const lr_case *item = s->result->item;
     lr_error error = {.message = "out of memory"};
-    char *path = kept_path(r, "candidate", result->item, ending_of(result->item));
+    s->candidate = candidate;
+    s->difference = kept_path(r, "difference", item, ".png");
+    s->comparing = s->candidate && s->difference &&
+                   lr_trial_start(&s->trial, &s->process, s->candidate, s->difference, item,
+                                  limit_of(r, item), &error) == LR_OK;
+    if (!s->comparing)
+        lr_judge_broken(s->result, "%s", error.message);
+    return s->comparing;
+}
+
+/* Compares the picture that the command wrote, in the place where it stays when it fails. */
+static bool compare_output(const runner *r, slot *s)
+{
+    lr_error error = {.message = "out of memory"};
+    char *path = kept_path(r, "candidate", s->result->item, ending_of(s->result->item));
     lr_status status = path ? lr_make_folders(path, &error) : LR_ERROR_MEMORY;
     if (status == LR_OK && rename(s->output, path) != 0)
         status = lr_fail(&error, LR_ERROR_FILE, "%.500s: %s", path, strerror(errno));
-    if (status != LR_OK) {
-        lr_judge_broken(result, "%s", error.message);
-        free(path);
-        return;
+    if (status == LR_OK)
+        return start_comparing(r, s, path);
+    lr_judge_broken(s->result, "%s", error.message);
+    free(path);
+    return false;
+}
+
+/* Makes the picture the golden where that is wanted, and removes what nobody needs. */
+static void end_comparing(const runner *r, slot *s)
+{
+    const lr_run_options *o = r->options;
+    lr_case_result *result = s->result;
+    lr_trial_finish(&s->trial, &s->process, result);
+    if (result->outcome == LR_OUTCOME_MISSING && (o->update || o->update_missing))
+        accept(s->candidate, result, LR_OUTCOME_ADDED);
+    else if (lr_outcome_failed(result->outcome) && result->readable && o->update)
+        accept(s->candidate, result, LR_OUTCOME_UPDATED);
+    bool failed = lr_outcome_failed(result->outcome);
+    if (!failed && result->difference) {
+        remove_kept(r, s->difference);
+        free(result->difference);
+        result->difference = NULL;
     }
-    judge(r, path, result);
-    if (lr_outcome_failed(result->outcome) || r->options->keep_all) {
-        result->candidate = path;
+    if (failed || o->keep_all || result->item->candidate) {
+        result->candidate = s->candidate;
+        s->candidate = NULL;
     } else {
-        remove_kept(r, path);
-        free(path);
+        remove_kept(r, s->candidate);
     }
+}
+
+/* After an interrupt, when the comparison has no verdict. */
+static void drop_comparison(const runner *r, slot *s)
+{
+    lr_case_result ignored = {0};
+    lr_trial_finish(&s->trial, &s->process, &ignored);
+    lr_case_result_free(&ignored);
+    remove_kept(r, s->difference);
+    if (!s->result->item->candidate)
+        remove_kept(r, s->candidate);
 }
 
 static void release(slot *s)
@@ -222,6 +251,8 @@ static void release(slot *s)
     free(s->folder);
     free(s->output);
     free(s->stats);
+    free(s->candidate);
+    free(s->difference);
     *s = (slot){0};
 }
 
@@ -234,17 +265,23 @@ static void announce(runner *r, const lr_case_result *result)
         r->stopping = true;
 }
 
+/* The slot's process has ended. */
 static void finish(runner *r, slot *s)
 {
     lr_case_result *result = s->result;
-    result->seconds = s->process.seconds;
-    if (!r->interrupted) {
+    result->seconds += s->process.seconds;
+    if (r->interrupted && s->comparing) {
+        drop_comparison(r, s);
+    } else if (s->comparing) {
+        end_comparing(r, s);
+    } else if (!r->interrupted) {
         result->output = clean_tail(&s->process);
         read_stats(s);
-        if (check_end(s))
-            judge_output(r, s);
-        announce(r, result);
+        if (check_end(s) && compare_output(r, s))
+            return;
     }
+    if (!r->interrupted)
+        announce(r, result);
     r->running--;
     release(s);
 }
@@ -266,12 +303,13 @@ static char *shown_command(const runner *r, const lr_case *item)
     return text;
 }
 
-static bool start(runner *r, slot *s, lr_case_result *result)
+/* False when the command does not run; the result says why. */
+static bool start_command(const runner *r, slot *s)
 {
+    lr_case_result *result = s->result;
     const lr_case *item = result->item;
     lr_command command = {0};
     lr_error error = {.message = "out of memory"};
-    *s = (slot){.result = result};
     result->command = shown_command(r, item);
     s->folder = lr_format_text("%s/%u", r->work, (unsigned)(s - r->slots));
     s->output = lr_format_text("%s/candidate%s", s->folder ? s->folder : "", ending_of(item));
@@ -284,47 +322,38 @@ static bool start(runner *r, slot *s, lr_case_result *result)
     if (started)
         started =
             lr_command_make(&command, item, r->options, r->options->program, s->output, s->stats);
-    double limit = item->settings.timeout > 0 ? item->settings.timeout : r->options->timeout;
     if (started)
-        started = lr_process_start(&s->process, (const char *const *)command.words, limit,
-                                   &error) == LR_OK;
+        started = lr_process_start(&s->process, (const char *const *)command.words,
+                                   limit_of(r, item), &error) == LR_OK;
     lr_command_free(&command);
-    if (!started) {
+    if (!started)
         lr_judge_broken(result, "%s", error.message);
-        release(s);
-    }
     return started;
 }
 
-/* A case of two folders: nothing runs. */
-static void compare_only(runner *r, lr_case_result *result)
+/* A case of two folders: no command runs. */
+static bool start_pair(const runner *r, slot *s)
 {
-    const lr_case *item = result->item;
-    double begin = lr_clock();
-    if (access(item->candidate, F_OK) != 0) {
-        lr_judge_broken(result, "there is no candidate %s", item->candidate);
-    } else {
-        judge(r, item->candidate, result);
-        result->candidate = lr_string_copy(item->candidate, strlen(item->candidate));
-    }
-    result->seconds = lr_clock() - begin;
-    announce(r, result);
+    const char *candidate = s->result->item->candidate;
+    if (access(candidate, F_OK) == 0)
+        return start_comparing(r, s, lr_string_copy(candidate, strlen(candidate)));
+    lr_judge_broken(s->result, "there is no candidate %s", candidate);
+    return false;
 }
 
 static void start_next(runner *r, lr_case_result *result)
 {
-    forget_earlier(r, result->item);
-    if (result->item->candidate) {
-        compare_only(r, result);
-        return;
-    }
     slot *s = r->slots;
     while (s->result)
         s++;
-    if (start(r, s, result))
+    *s = (slot){.result = result};
+    forget_earlier(r, result->item);
+    if (result->item->candidate ? start_pair(r, s) : start_command(r, s)) {
         r->running++;
-    else
+    } else {
+        release(s);
         announce(r, result);
+    }
 }
 
 static void look_after(runner *r)

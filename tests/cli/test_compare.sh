@@ -50,6 +50,12 @@ for bad in short.ppm missing.ppm .; do
     says err "$bad"
 done
 expect 2 "$lavaray" compare "$a" "$b" --mask "$work/small.ppm" && says err 'small\.ppm: has 64 x 47 pixels, but .*a\.ppm has 64 x 48'
+expect 2 "$lavaray" compare "$a" "$b" --ignore 0,0,64,48 && one_line && says err 'nothing is left to compare'
+for flag in fail:abs failpercent:abs-percent hardfail:max-abs; do # idiff's
+    expect 2 "$lavaray" compare "$a" "$b" --"${flag%:*}" 1 && says err "did you mean --${flag#*:}\?"
+done
+mapfile -t many < <(yes -- --ignore=0,0,1,1 | head -n 65)
+expect 2 "$lavaray" compare "$a" "$b" "${many[@]}" && one_line && says err '--ignore is given more than 64 times'
 expect 5 "$lavaray" compare "$a" "$b" --mask "$work/missing.ppm"
 
 # JSON.

@@ -46,7 +46,8 @@ tests cases: "$five"
 expect 1 "$tool" test t --json out.json
 is one missing
 says out '^missing +one'
-says out 'lavaray test t -k five --update'
+says out 'lavaray test t -k five --update$'
+says out 'lavaray test t --update-missing$'
 same lavaray-test/candidate/one.pgm pictures/one.pgm
 [ ! -e t/golden ] || problem 'goldens were written without being asked for'
 expect 1 "$tool" test t --ci
@@ -95,6 +96,11 @@ says out 'not a picture'
 grep -q P2 t/golden/one.pgm || problem 'a golden was replaced by rubbish'
 picture pictures/one.pgm 100
 
+# The folder that we are in, also as one of two.
+(cd t && "$tool" test . --list && cd golden && "$tool" test --reference . --candidate . --list) >out
+[ "$(xargs <out)" = 'five four one three two five.pgm four.pgm one.pgm three.pgm two.pgm' ] ||
+    problem "in the folder itself there are $(xargs <out)"
+
 # Selecting cases.
 expect 0 "$tool" test t -k two --list
 [ "$(cat out)" = two ] || problem 'the name selects more than its case'
@@ -126,6 +132,8 @@ tests 'cases:' "$(case_of one)" \
     '  fails: {run: [sh, -c, "echo sorry >&2; exit 7", "{output}"]}' \
     '  leaves: {run: [sh, -c, "sleep '"$nap"' & cp pictures/one.pgm $0", "{output}"], format: pgm}' \
     '  silent: {run: ["true", "{output}"]}' \
+    '  folder: {run: [mkdir, "{output}"]}' \
+    '  pipe: {run: [mkfifo, "{output}"]}' \
     '  half: {run: [sh, -c, "printf P2 >$0; kill $$", "{output}"]}' \
     '  absent: {run: [./no-such-program, "{output}"]}'
 mkdir t/golden
@@ -134,7 +142,7 @@ cp pictures/one.pgm t/golden/leaves.pgm
 expect 1 timeout 60 "$tool" test t --jobs 8 --json out.json
 is one passed
 is leaves passed
-for name in crash hang stubborn fails silent half absent; do
+for name in crash hang stubborn fails silent folder pipe half absent; do
     is $name broken
 done
 says out 'ended by signal 11 \(Segmentation fault\)'
@@ -203,9 +211,36 @@ expect 0 "$tool" test --reference reference --candidate candidate -k below/other
 same reference/below/other.pgm candidate/below/other.pgm
 [ ! -e reference/new.pgm ] || problem 'a case was accepted that was not asked for'
 
-# Ctrl-C: ends what runs, says so, leaves nothing.
+# The comparison is a process of its own: it ends by a signal or its time limit without the others.
+rm -rf reference candidate
+for folder in reference candidate; do
+    picture $folder/quick.pgm 1
+    { printf 'P5 4000 4000 255\n'; head -c 16000000 /dev/zero | tr '\0' $folder; } >$folder/slow.pgm
+done
+echo 'cases: {slow.pgm: {compare: {flip-mean: 1}}}' >slow.yaml
+"$tool" test --reference reference --candidate candidate --settings slow.yaml --jobs 1 --json out.json \
+    --update --report page.html >out 2>err &
+tester=$!
+for _ in $(seq 500); do
+    grep -qs '^passed *quick' out && comparison=$(pgrep -P $tester) && break
+    sleep 0.02
+done
+kill -KILL "${comparison:-none}" # as when memory is out
+wait $tester
+[ $? -eq 1 ] || problem 'not exit code 1 after a comparison crashed'
+is quick.pgm passed
+is slow.pgm broken
+says out 'comparing the pictures ended by signal 9 \(Killed\)'
+[ "$(head -c 30 reference/slow.pgm | tail -c 1)" = r ] || problem 'a picture that was never compared was accepted'
+expect 1 "$tool" test --reference reference --candidate candidate --settings slow.yaml --timeout 0.2 --json out.json
+is quick.pgm passed
+is slow.pgm broken
+says out 'comparing the pictures was ended after the time limit of 0.2 s'
+
+# Ctrl-C: ends what runs, says so, leaves nothing. Without --foreground timeout sends it twice, and the
+# second ends the tester at once.
 tests "cases: {slow: {run: [sh, -c, 'sleep $nap; : {output}']}}"
-timeout --preserve-status -s INT 1 "$tool" test t >out 2>err
+timeout --foreground --preserve-status -s INT 1 "$tool" test t >out 2>err
 [ $? -eq 130 ] || problem 'not exit code 130 after Ctrl-C'
 says err interrupted
 [ ! -e lavaray-test ] || problem 'left behind after Ctrl-C'

@@ -81,6 +81,8 @@ says err 'differs +bad'
 expect 1 "$tool" test t --junit -
 head -n 1 "$work/out" | grep -q '^<?xml' || problem '--junit - is not XML alone'
 expect 2 "$tool" test t --junit - --json - && one_line
+(cd t && "$tool" test . --json - 2>/dev/null) >"$work/out"
+says out '"title": "t"'
 
 # Colours on a terminal alone, and not with NO_COLOR.
 escape=$(printf '\033')

@@ -134,12 +134,19 @@ static uint16_t half_of(float value)
     return (uint16_t)((exponent + 14) << 10 | (int)(mantissa * 2048 - 1024));
 }
 
+static bool is_stored(const channel *c, int32_t x, int32_t y)
+{
+    return c->sampling == 0 || (x % c->sampling == 0 && y % c->sampling == 0);
+}
+
 static void put_pixels(file_bytes *file, const exr_file *exr, window w)
 {
     for (int32_t y = w.y0; y <= w.y1; y++)
         for (const channel *c = exr->channels; c->name; c++)
             for (int32_t x = w.x0; x <= w.x1; x++) {
                 float value = value_at(c->name, x, y);
+                if (!is_stored(c, x, y))
+                    continue;
                 if (c->type == FLOAT)
                     put(file, &value, 4);
                 else if (c->type == HALF)
@@ -147,14 +154,6 @@ static void put_pixels(file_bytes *file, const exr_file *exr, window w)
                 else
                     put_number(file, (uint32_t)value, 4);
             }
-}
-
-static size_t pixel_bytes(const exr_file *exr)
-{
-    size_t size = 0;
-    for (const channel *c = exr->channels; c->name; c++)
-        size += c->type == HALF ? 2 : 4;
-    return size;
 }
 
 static void put_chunk(file_bytes *file, size_t table, int *index, const exr_file *exr, window w)
@@ -172,8 +171,13 @@ static void put_chunk(file_bytes *file, size_t table, int *index, const exr_file
     } else {
         put_number(file, (uint32_t)w.y0, 4);
     }
-    put_number(file, pixel_bytes(exr) * (size_t)(w.x1 - w.x0 + 1) * (size_t)(w.y1 - w.y0 + 1), 4);
+    size_t start = file->size;
+    put_number(file, 0, 4);
     put_pixels(file, exr, w);
+    end = file->size;
+    file->size = start;
+    put_number(file, end - start - 4, 4);
+    file->size = end;
 }
 
 static file_bytes make(const exr_file *exr)
@@ -251,6 +255,22 @@ static void test_channels(void **state)
                                      {"variance.G", FLOAT, 0}},
                         SMALL}),
            "R", "G", "B");
+    EXPECT(
+        (&(exr_file){.channels = {{"B", HALF, 0}, {"G", HALF, 0}, {"R", HALF, 0}, {"Z", HALF, 0}},
+                     SMALL}),
+        "R", "G", "B");
+    EXPECT((&(exr_file){.channels = {{"Y", HALF, 0}, {"a.x", HALF, 0}, {"a.y", HALF, 0}}, SMALL}),
+           "Y");
+    EXPECT(
+        (&(exr_file){.channels = {{"B", HALF, 0}, {"G", HALF, 0}, {"R", HALF, 0}, {"Z", HALF, 2}},
+                     .data = {0, 0, 5, 3},
+                     .display = {0, 0, 5, 3}}),
+        "R", "G", "B");
+    EXPECT((&(exr_file){
+               .channels = {{"A", FLOAT, 2}, {"R.B", UINT, 0}, {"R.G", HALF, 0}, {"R.R", FLOAT, 0}},
+               .data = {0, 0, 5, 3},
+               .display = {0, 0, 5, 3}}),
+           "R.R", "R.G", "R.B");
     EXPECT((&(exr_file){.channels = {{"a.b.B", HALF, 0},
                                      {"a.b.G", HALF, 0},
                                      {"a.b.R", FLOAT, 0},
