@@ -1,5 +1,5 @@
-# SwiftShader makes the same pictures as the usual driver. Skipped without it, and when it cannot
-# compile the kernels within a minute and 8 GB: then it is of no use for tests.
+# SwiftShader makes the same pictures as the usual driver, and compiles the kernels within a minute
+# and 8 GB. Skipped without it.
 . tests/cli/lib.sh
 [ -n "${LAVARAY_SWIFTSHADER_ICD:-}" ] || { echo 'LAVARAY_SWIFTSHADER_ICD is not set' >&2; exit 77; }
 need_device
@@ -15,14 +15,6 @@ on_second() (
 
 expect 0 on_second "$LAVARAY" devices || finish
 says out 'SwiftShader.*usable, exact'
-code=0
-on_second "$LAVARAY" render -q $small --size 8x6 --spp 1 -o "$work/x.pfm" || code=$?
-if [ "$code" -gt 128 ]; then
-    echo 'SwiftShader cannot compile the kernels in time' >&2
-    [ "$failures" -gt 0 ] || exit 77
-fi
-[ "$code" -eq 0 ] || { problem "exit code $code on SwiftShader"; finish; }
-
 for scene in scenes/*.yaml $scenes/small.yaml $scenes/two-cameras.yaml; do
     [ -f "$scene" ] || continue
     render="$LAVARAY render -q $scene --size 48x36 --spp 2 -o $work/x.pfm --stats"
