@@ -72,6 +72,7 @@ typedef struct vec4 {
 #define LR_FILM_SAMPLES 7
 #define LR_FILM_STEP_BITS 36
 #define LR_FILM_MAX 268435456.0
+#define LR_FILM_STEP 1.4551915228366852e-11
 
 /* ---- Numbers the kernels and the host agree on ---- */
 #define LR_T_MAX 1.0e15                     /* nothing is hit farther away */

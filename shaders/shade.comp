@@ -50,7 +50,8 @@ void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m,
             light = load_light(first + l);
         arriving_light arriving = sample_light(light, s.position);
         vec3 value = weight * (arriving.color * classic_light(m, color, n, wo, arriving.wi));
-        bool reaches = lit && (value.x > 0.0 || value.y > 0.0 || value.z > 0.0);
+        // Light of less than a step of the film adds nothing, whatever stands in its way.
+        bool reaches = lit && any(greaterThanEqual(value, vec3(LR_FILM_STEP)));
         uint slot = reaches ? rays.count : no_slot;
         red = replaced(red, slot, value.x);
         green = replaced(green, slot, value.y);
