@@ -72,13 +72,21 @@ lr_status lr_set_create(lr_device *device, const lr_layout *layout, const lr_buf
         .pSetLayouts = &layout->set,
     };
     LR_VK(vk, vkAllocateDescriptorSets, device->handle, &allocate, set);
+    lr_set_write(device, layout, buffers, *set);
+fail:
+    return status;
+}
+
+void lr_set_write(lr_device *device, const lr_layout *layout, const lr_buffer *const *buffers,
+                  VkDescriptorSet set)
+{
     VkDescriptorBufferInfo infos[LR_BINDINGS_MAX];
     VkWriteDescriptorSet writes[LR_BINDINGS_MAX];
     for (uint32_t i = 0; i < layout->binding_count; i++) {
         infos[i] = (VkDescriptorBufferInfo){buffers[i]->handle, 0, VK_WHOLE_SIZE};
         writes[i] = (VkWriteDescriptorSet){
             .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-            .dstSet = *set,
+            .dstSet = set,
             .dstBinding = i,
             .descriptorCount = 1,
             .descriptorType = layout->types[i],
@@ -86,9 +94,7 @@ lr_status lr_set_create(lr_device *device, const lr_layout *layout, const lr_buf
             .pTexelBufferView = &buffers[i]->view,
         };
     }
-    vk->vkUpdateDescriptorSets(device->handle, layout->binding_count, writes, 0, NULL);
-fail:
-    return status;
+    device->vk.vkUpdateDescriptorSets(device->handle, layout->binding_count, writes, 0, NULL);
 }
 
 lr_status lr_program_create(lr_device *device, const lr_layout *layout, const lr_program_desc *desc,

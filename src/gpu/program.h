@@ -30,6 +30,9 @@ void lr_layout_destroy(lr_device *device, lr_layout *layout);
 /* A descriptor set with buffers[i] at binding i. It lives as long as the layout. */
 lr_status lr_set_create(lr_device *device, const lr_layout *layout, const lr_buffer *const *buffers,
                         VkDescriptorSet *set, lr_error *error);
+/* Puts other buffers into a set that no unfinished command uses. */
+void lr_set_write(lr_device *device, const lr_layout *layout, const lr_buffer *const *buffers,
+                  VkDescriptorSet set);
 
 typedef struct lr_program_desc {
     const uint32_t

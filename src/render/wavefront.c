@@ -101,8 +101,6 @@ static lr_status create_buffers(lr_wavefront *w, lr_error *error)
         {&w->counters_host, LR_BUFFER_HOST, sizeof(struct gpu_counters), "the counters"},
         {&w->hits, LR_BUFFER_TEXEL, sizeof(struct gpu_hit) * (VkDeviceSize)w->chunk_rays,
          "the hits"},
-        {&w->queues[0].rays, LR_BUFFER_TEXEL, sizeof(struct gpu_ray) * (VkDeviceSize)w->chunk_rays,
-         "the queue of camera rays"},
         {&w->none, LR_BUFFER_TEXEL, 256, "nothing"},
     };
     lr_status status = LR_OK;
@@ -127,14 +125,42 @@ static lr_status create_layout(lr_wavefront *w, lr_error *error)
     types[LR_BIND_SCENE_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
     types[LR_BIND_RAYS_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
     types[LR_BIND_HITS_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-    lr_layout_desc desc = {types, LR_BIND_COUNT, sizeof(struct gpu_work), LR_GENERATIONS_MAX};
+    lr_layout_desc desc = {types, LR_BIND_COUNT, sizeof(struct gpu_work), 2};
     return lr_layout_create(w->device, &desc, &w->layout, error);
 }
 
-static lr_status create_set(lr_wavefront *w, const lr_buffer *rays_in, const lr_buffer *rays_out,
-                            VkDescriptorSet *set, lr_error *error)
+/* Gives an empty queue a buffer for the children of one chunk. */
+static lr_status open_queue(lr_wavefront *w, lr_queue *queue, lr_error *error)
 {
-    const lr_buffer *buffers[LR_BIND_COUNT] = {
+    if (queue->rays)
+        return LR_OK;
+    if (w->unused_count == 0) {
+        lr_buffer *buffer = &w->pool[w->pool_count];
+        lr_status status = lr_buffer_create(
+            w->device, LR_BUFFER_TEXEL, 2 * sizeof(struct gpu_ray) * (VkDeviceSize)w->chunk_rays,
+            "the queue of rays", buffer, error);
+        if (status)
+            return status;
+        w->pool_count++;
+        w->unused[w->unused_count++] = buffer;
+    }
+    queue->rays = w->unused[--w->unused_count];
+    return LR_OK;
+}
+
+static void close_if_empty(lr_wavefront *w, lr_queue *queue)
+{
+    if (!queue->rays || queue->count > 0)
+        return;
+    w->unused[w->unused_count++] = queue->rays;
+    queue->rays = NULL;
+}
+
+/* The buffers of the kernels that read the rays of one queue and write those of another. */
+static void list_buffers(const lr_wavefront *w, const lr_buffer *rays_in, const lr_buffer *rays_out,
+                         const lr_buffer *buffers[LR_BIND_COUNT])
+{
+    const lr_buffer *list[LR_BIND_COUNT] = {
         [LR_BIND_FRAME] = &w->frame,
         [LR_BIND_SCENE_TEXEL] = w->rows.view ? &w->rows : &w->none,
         [LR_BIND_SCENE_ROWS] = &w->rows,
@@ -146,24 +172,37 @@ static lr_status create_set(lr_wavefront *w, const lr_buffer *rays_in, const lr_
         [LR_BIND_RAYS_TEXEL] = rays_in->view ? rays_in : &w->none,
         [LR_BIND_HITS_TEXEL] = w->hits.view ? &w->hits : &w->none,
     };
-    return lr_set_create(w->device, &w->layout, buffers, set, error);
+    memcpy(buffers, list, sizeof list);
 }
 
-/* Makes the set that traces generation g into generation g + 1, and the queue of the latter. */
-static lr_status open_generation(lr_wavefront *w, uint32_t g, lr_error *error)
+static lr_status create_sets(lr_wavefront *w, lr_error *error)
 {
-    lr_queue *queue = &w->queues[g], *next = queue + 1;
-    if (queue->set)
-        return LR_OK;
-    bool children = w->scene->constants[LR_SPEC_SCATTER];
-    lr_status status = LR_OK;
-    if (children)
-        status = lr_buffer_create(w->device, LR_BUFFER_TEXEL,
-                                  2 * sizeof(struct gpu_ray) * (VkDeviceSize)w->chunk_rays,
-                                  "the queue of rays", &next->rays, error);
+    const lr_buffer *buffers[LR_BIND_COUNT];
+    list_buffers(w, &w->none, &w->none, buffers);
+    lr_status status = lr_set_create(w->device, &w->layout, buffers, &w->camera_set, error);
     if (!status)
-        status = create_set(w, &queue->rays, children ? &next->rays : &w->none, &queue->set, error);
+        status = lr_set_create(w->device, &w->layout, buffers, &w->set, error);
     return status;
+}
+
+/* Opens the queues of a pass and points the sets at them. */
+static lr_status open_generation(lr_wavefront *w, uint32_t generation, lr_error *error)
+{
+    lr_queue *queue = &w->queues[generation], *next = queue + 1;
+    bool children = w->scene->constants[LR_SPEC_SCATTER];
+    lr_status status = open_queue(w, queue, error);
+    if (!status && children)
+        status = open_queue(w, next, error);
+    if (status)
+        return status;
+    const lr_buffer *buffers[LR_BIND_COUNT];
+    list_buffers(w, queue->rays, children ? next->rays : &w->none, buffers);
+    lr_set_write(w->device, &w->layout, buffers, w->set);
+    if (generation == 0) {
+        list_buffers(w, &w->none, queue->rays, buffers);
+        lr_set_write(w->device, &w->layout, buffers, w->camera_set);
+    }
+    return LR_OK;
 }
 
 static void reset_counters(lr_wavefront *w)
@@ -183,8 +222,7 @@ static lr_status warm_up(lr_wavefront *w, lr_error *error)
     const VkPipeline programs[] = {w->camera, w->trace, w->shade};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) {
         lr_commands_barrier(w->device);
-        lr_commands_dispatch(w->device, &w->layout, programs[i], w->queues[0].set, &nothing, 1, 1,
-                             1);
+        lr_commands_dispatch(w->device, &w->layout, programs[i], w->set, &nothing, 1, 1, 1);
     }
     return lr_commands_finish(w->device, error);
 }
@@ -201,7 +239,7 @@ lr_status lr_wavefront_create(lr_device *device, const lr_packed_scene *scene,
     if (!status)
         status = create_buffers(w, error);
     if (!status)
-        status = create_set(w, &w->none, &w->queues[0].rays, &w->camera_set, error);
+        status = create_sets(w, error);
     if (!status)
         status = open_generation(w, 0, error);
     double uploaded = lr_now();
@@ -231,20 +269,20 @@ void lr_wavefront_destroy(lr_wavefront *wavefront)
                             &w->counters, &w->counters_host, &w->hits, &w->none};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         lr_buffer_destroy(w->device, buffers[i]);
-    for (uint32_t i = 0; i < LR_GENERATIONS_MAX; i++)
-        lr_buffer_destroy(w->device, &w->queues[i].rays);
+    for (uint32_t i = 0; i < w->pool_count; i++)
+        lr_buffer_destroy(w->device, &w->pool[i]);
     *w = (lr_wavefront){0};
 }
 
 /* Shades the hits of a pass: in several dispatches when there are many lights. */
-static void record_shade(lr_wavefront *w, struct gpu_work *work, VkDescriptorSet set)
+static void record_shade(lr_wavefront *w, struct gpu_work *work)
 {
     work->light = 0;
     work->first_lights = 1;
     do {
         work->light_count = at_most(w->lights_at_once, w->scene->light_count - work->light);
         lr_commands_barrier(w->device);
-        lr_commands_dispatch_indirect(w->device, &w->layout, w->shade, set, work, &w->counters,
+        lr_commands_dispatch_indirect(w->device, &w->layout, w->shade, w->set, work, &w->counters,
                                       offsetof(struct gpu_counters, hit_groups));
         work->light += work->light_count;
         work->first_lights = 0;
@@ -299,7 +337,6 @@ static lr_status run_pass(lr_wavefront *w, uint32_t generation, struct gpu_work 
         status = lr_commands_begin(w->device, error);
     if (status)
         return status;
-    VkDescriptorSet set = w->queues[generation].set;
     work->count = rays;
     reset_counters(w);
     lr_commands_barrier(w->device);
@@ -308,9 +345,9 @@ static lr_status run_pass(lr_wavefront *w, uint32_t generation, struct gpu_work 
                              camera_groups[0], camera_groups[1], camera_groups[2]);
         lr_commands_barrier(w->device);
     }
-    lr_commands_dispatch(w->device, &w->layout, w->trace, set, work,
+    lr_commands_dispatch(w->device, &w->layout, w->trace, w->set, work,
                          groups_for(rays, LR_GROUP_SIZE), 1, 1);
-    record_shade(w, work, set);
+    record_shade(w, work);
     lr_commands_barrier(w->device);
     lr_commands_copy(w->device, &w->counters, &w->counters_host, sizeof(struct gpu_counters));
     double start = lr_now();
@@ -320,6 +357,8 @@ static lr_status run_pass(lr_wavefront *w, uint32_t generation, struct gpu_work 
         w->stats->longest_pass_seconds = seconds;
     if (!status)
         status = take_counts(w, rays, generation, error);
+    close_if_empty(w, &w->queues[generation]);
+    close_if_empty(w, &w->queues[generation + 1]);
     return status;
 }
 

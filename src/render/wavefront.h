@@ -12,8 +12,7 @@
 #define LR_GENERATIONS_MAX 322
 
 typedef struct lr_queue {
-    lr_buffer rays;      /* made when the generation is first reached */
-    VkDescriptorSet set; /* traces this queue into the next */
+    lr_buffer *rays; /* NULL while it is empty */
     uint32_t count;
 } lr_queue;
 
@@ -22,9 +21,14 @@ typedef struct lr_wavefront {
     const lr_packed_scene *scene;
     lr_layout layout;
     VkPipeline camera, trace, shade;
+    VkDescriptorSet camera_set, set;
     lr_buffer frame, rows, film, film_host, counters, counters_host, hits, none;
-    VkDescriptorSet camera_set; /* makes camera rays into queues[0] */
     lr_queue queues[LR_GENERATIONS_MAX];
+    /* Where queues live. A buffer that a queue gives back is the first to be taken again: it is
+     * still in the caches. */
+    lr_buffer pool[LR_GENERATIONS_MAX];
+    lr_buffer *unused[LR_GENERATIONS_MAX];
+    uint32_t pool_count, unused_count;
     uint32_t tile_size, chunk_rays, lights_at_once;
     lr_render_stats *stats;
 } lr_wavefront;
