@@ -10,8 +10,8 @@
 #include "bvh/bvh_internal.h"
 
 enum {
-    CHUNK = 1 << 13, /* references a thread takes at once while a level is cut */
-    TASK = 1 << 14,  /* ranges of at most this many are one thread's work */
+    CHUNK = 1 << 12, /* references a thread takes at once while a level is cut */
+    TASK = 1 << 12,  /* ranges of at most this many are one thread's work */
 };
 
 /* A node of the levels that are cut by all threads, or a task below them. */
@@ -50,7 +50,8 @@ typedef struct builder {
 
 /* ---- References --------------------------------------------------------------------------- */
 
-/* What a chunk of the input says: its largest coordinate, its centroids, its first bad box. */
+/* What a chunk of the input says: the references' largest coordinate, their centroids, the first
+ * bad box. */
 typedef struct survey {
     float largest;
     uint32_t bad;
@@ -71,19 +72,12 @@ static bool box_is_good(const lr_bvh_box *box)
     return true;
 }
 
-static float largest_coordinate(const lr_bvh_box *box)
-{
-    float largest = 0;
-    for (int axis = 0; axis < 3; axis++)
-        largest = fmaxf(largest, fmaxf(-box->min[axis], box->max[axis]));
-    return largest;
-}
-
 static void survey_chunk(void *context, uint32_t part)
 {
     const survey_work *work = context;
     const builder *b = work->builder;
     survey s = {.bad = UINT32_MAX, .centroids = bounds_empty()};
+    bounds all = bounds_empty();
     uint32_t first = part * CHUNK;
     uint32_t end = b->count - first < CHUNK ? b->count : first + CHUNK;
     for (uint32_t i = first; i < end; i++) {
@@ -93,15 +87,17 @@ static void survey_chunk(void *context, uint32_t part)
             s.bad = i;
             break;
         }
-        /* The sum turns -0, which minimum and maximum treat differently by their order, into 0. */
         for (int axis = 0; axis < 3; axis++) {
-            r->lo[axis] = box->min[axis] * b->scale + 0.0f;
-            r->hi[axis] = box->max[axis] * b->scale + 0.0f;
+            r->lo[axis] = box->min[axis] * b->scale;
+            r->hi[axis] = box->max[axis] * b->scale;
         }
         r->index = i;
-        s.largest = fmaxf(s.largest, largest_coordinate(box));
+        r->key = 0;
+        all = bounds_union(all, r->box);
         s.centroids = bounds_add(s.centroids, reference_centroid(r));
     }
+    for (int axis = 0; axis < 3; axis++)
+        s.largest = fmaxf(s.largest, fmaxf(-all.lo[axis], all.hi[axis]));
     work->surveys[part] = s;
 }
 
@@ -165,25 +161,19 @@ static void scatter_chunk(void *context, uint32_t part)
     const builder *b = context;
     chunk *c = &b->chunks[part];
     const top_node *node = &b->top[c->node];
-    const split *s = &node->split;
     if (!node->left)
         return;
     const reference *from = b->references[node->parity] + c->first;
-    reference *left = b->references[!node->parity] + c->left_at;
-    reference *right = b->references[!node->parity] + c->right_at;
-    bounds low = bounds_empty(), high = bounds_empty();
+    reference *to = b->references[!node->parity];
+    uint32_t at[2] = {c->left_at, c->right_at};
+    bounds sides[2] = {bounds_empty(), bounds_empty()};
     for (uint32_t i = 0; i < c->count; i++) {
-        lanes centroid = reference_centroid(&from[i]);
-        if ((uint32_t)bin_of(centroid, s->base, s->scale)[s->axis] < s->bin) {
-            low = bounds_add(low, centroid);
-            *left++ = from[i];
-        } else {
-            high = bounds_add(high, centroid);
-            *right++ = from[i];
-        }
+        bool right = split_side(&node->split, &from[i]);
+        sides[right] = bounds_add(sides[right], reference_centroid(&from[i]));
+        to[at[right]++] = from[i];
     }
-    c->left = low;
-    c->right = high;
+    c->left = sides[0];
+    c->right = sides[1];
 }
 
 static void cut_chunks(builder *b, uint32_t node)
@@ -329,6 +319,7 @@ static void finish_top(const builder *b)
             continue;
         lr_bvh_node *out = &b->bvh->nodes[node->position];
         out->link = b->top[node->left + 1].position;
+        out->count = 0;
         out->axis = (uint16_t)node->split.axis;
         set_union(b->bvh->nodes, node->position);
     }
@@ -342,8 +333,8 @@ static void restore_boxes(const builder *b)
         bounds all = bounds_empty();
         for (uint32_t k = 0; k < nodes[i].count; k++) {
             const lr_bvh_box *box = &b->boxes[b->bvh->order[nodes[i].link + k]];
-            all = bounds_add(all, (lanes){box->min[0], box->min[1], box->min[2], 0} + 0.0f);
-            all = bounds_add(all, (lanes){box->max[0], box->max[1], box->max[2], 0} + 0.0f);
+            all = bounds_add(all, (lanes){box->min[0], box->min[1], box->min[2], 0});
+            all = bounds_add(all, (lanes){box->max[0], box->max[1], box->max[2], 0});
         }
         if (nodes[i].count)
             bvh_node_set_bounds(&nodes[i], all);
@@ -383,10 +374,10 @@ static lr_status check(uint32_t count, const lr_bvh_options *options, builder *b
 static bool allocate(builder *b)
 {
     uint32_t pieces = b->count / CHUNK + b->count / TASK + 1;
-    b->bvh->order = lr_alloc(b->count, sizeof *b->bvh->order);
-    b->references[0] = lr_alloc(b->count, sizeof(reference));
-    b->references[1] = b->count > TASK ? lr_alloc(b->count, sizeof(reference)) : NULL;
-    b->nodes = lr_alloc(2 * (size_t)b->count, sizeof *b->nodes);
+    b->bvh->order = lr_alloc_large(b->count, sizeof *b->bvh->order);
+    b->references[0] = lr_alloc_large(b->count, sizeof(reference));
+    b->references[1] = b->count > TASK ? lr_alloc_large(b->count, sizeof(reference)) : NULL;
+    b->nodes = lr_alloc_large(2 * (size_t)b->count, sizeof *b->nodes);
     b->chunks = b->count > TASK ? lr_alloc(pieces, sizeof *b->chunks) : NULL;
     return b->bvh->order && b->references[0] && (b->references[1] || b->count <= TASK) &&
            b->nodes && (b->chunks || b->count <= TASK) &&
@@ -416,7 +407,7 @@ static bool build_tasks(builder *b)
         b->references[i] = NULL;
     }
     place_nodes(b);
-    b->bvh->nodes = lr_alloc(b->bvh->node_count, sizeof *b->bvh->nodes);
+    b->bvh->nodes = lr_alloc_large(b->bvh->node_count, sizeof *b->bvh->nodes);
     if (!b->bvh->nodes)
         return false;
     lr_run_parallel_on(b->threads, b->task_count, copy_task, b);

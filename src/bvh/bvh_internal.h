@@ -104,6 +104,13 @@ static inline int_lanes bin_of(lanes centroid, lanes base, lanes scale)
     return __builtin_convertvector((centroid - base) * scale, int_lanes);
 }
 
+/* Whether the reference goes right; in the arithmetic of bin_of. */
+static inline bool split_side(const split *s, const reference *r)
+{
+    float centroid = r->lo[s->axis] + r->hi[s->axis];
+    return (uint32_t)((centroid - s->base[s->axis]) * s->scale[s->axis]) >= s->bin;
+}
+
 /* The number of halvings that make one of count. */
 static inline uint32_t bvh_halvings(uint32_t count)
 {

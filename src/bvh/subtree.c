@@ -107,23 +107,34 @@ static bounds build_sorted(subtree *tree, const range *r, bool same_centroid)
 
 /* ---- A few references: every plane -------------------------------------------------------- */
 
-/* The places of the references in their order along axis, ties by index. */
+/* The places of the references in their order by centroid along axis, those of ties in the order
+ * they have. Counting who comes before costs less than a sort's branches. */
 static void sort_few(const reference *references, uint32_t count, uint32_t axis, uint8_t *places)
 {
     float keys[EXACT];
+    for (uint32_t i = 0; i < count; i++)
+        keys[i] = references[i].lo[axis] + references[i].hi[axis];
     for (uint32_t i = 0; i < count; i++) {
-        float key = references[i].lo[axis] + references[i].hi[axis];
-        uint32_t at = i;
-        for (; at > 0; at--) {
-            uint8_t before = places[at - 1];
-            if (keys[at - 1] < key ||
-                (keys[at - 1] == key && references[before].index < references[i].index))
-                break;
-            keys[at] = keys[at - 1];
-            places[at] = before;
-        }
-        keys[at] = key;
-        places[at] = (uint8_t)i;
+        uint32_t rank = 0;
+        for (uint32_t k = 0; k < i; k++)
+            rank += keys[k] <= keys[i];
+        for (uint32_t k = i + 1; k < count; k++)
+            rank += keys[k] < keys[i];
+        places[rank] = (uint8_t)i;
+    }
+}
+
+static void split_two(reference *references, split *s)
+{
+    bounds centroids = range_centroids(references, 2);
+    s->axis = widest_axis(&centroids);
+    s->left = 1;
+    s->cost = bounds_area(references[0].box) + bounds_area(references[1].box);
+    if (references[1].lo[s->axis] + references[1].hi[s->axis] <
+        references[0].lo[s->axis] + references[0].hi[s->axis]) {
+        reference first = references[1];
+        references[1] = references[0];
+        references[0] = first;
     }
 }
 
@@ -132,6 +143,10 @@ static void split_few(reference *references, uint32_t count, split *s)
 {
     uint8_t places[3][EXACT];
     *s = (split){0};
+    if (count == 2) {
+        split_two(references, s);
+        return;
+    }
     for (uint32_t axis = 0; axis < 3; axis++) {
         float right_cost[EXACT];
         sort_few(references, count, axis, places[axis]);
@@ -169,26 +184,23 @@ static void find_split(const reference *references, const range *r, split *s)
     bvh_bins_choose(&b, s);
 }
 
-/* Moves the left side's references before the right's and measures both sides' centroids. */
+/* Moves the left side's references before the right's and measures both sides' centroids. Branches
+ * on the side would be guessed wrong half the time. */
 static void partition(reference *references, uint32_t count, const split *s, range *left,
                       range *right)
 {
-    bounds low = bounds_empty(), high = bounds_empty();
-    uint32_t i = 0, j = count;
-    while (i < j) {
-        lanes centroid = reference_centroid(&references[i]);
-        if ((uint32_t)bin_of(centroid, s->base, s->scale)[s->axis] < s->bin) {
-            low = bounds_add(low, centroid);
-            i++;
-        } else {
-            high = bounds_add(high, centroid);
-            reference moved = references[i];
-            references[i] = references[--j];
-            references[j] = moved;
-        }
+    bounds sides[2] = {bounds_empty(), bounds_empty()};
+    reference *end = references; /* of the left side */
+    for (uint32_t i = 0; i < count; i++) {
+        const reference r = references[i];
+        bool is_right = split_side(s, &r);
+        sides[is_right] = bounds_add(sides[is_right], reference_centroid(&r));
+        references[i] = *end;
+        *end = r;
+        end += !is_right;
     }
-    left->centroids = low;
-    right->centroids = high;
+    left->centroids = sides[0];
+    right->centroids = sides[1];
 }
 
 static bounds build(subtree *tree, const range *r)

@@ -6,10 +6,23 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 #include <cmocka.h>
 
 #include "bvh_check.h"
 #include "bvh_meshes.h"
+
+/* The address space in use. */
+static rlim_t mapped_bytes(void)
+{
+    unsigned long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    assert_non_null(file);
+    assert_int_equal(fscanf(file, "%lu", &pages), 1);
+    fclose(file);
+    return (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE);
+}
 
 static lr_bvh *build(const lr_bvh_box *boxes, uint32_t count, const lr_bvh_options *options)
 {
@@ -246,6 +259,39 @@ static void test_refused(void **state)
     mesh_free(&m);
 }
 
+/* With any limit on memory there is a hierarchy or a message. */
+static void test_no_memory(void **state)
+{
+    (void)state;
+#ifdef __SANITIZE_ADDRESS__
+    skip(); /* it needs the address space itself */
+#endif
+    mesh m = mesh_soup(1500000, 0.1f, 6); /* too many for memory that was freed before */
+    struct rlimit before, limited;
+    assert_int_equal(getrlimit(RLIMIT_AS, &before), 0);
+    int refused = 0;
+    for (int megabytes = 0; megabytes < 300; megabytes += 30) {
+        lr_bvh *bvh;
+        lr_error error = {0};
+        limited = before;
+        limited.rlim_cur = mapped_bytes() + ((rlim_t)megabytes << 20);
+        assert_int_equal(setrlimit(RLIMIT_AS, &limited), 0);
+        lr_status status = lr_bvh_create(m.boxes, m.count, NULL, &bvh, &error);
+        assert_int_equal(setrlimit(RLIMIT_AS, &before), 0);
+        if (status == LR_OK)
+            assert_null(bvh_problem(bvh, m.boxes, m.count, 4));
+        else {
+            assert_int_equal(status, LR_ERROR_MEMORY);
+            assert_null(bvh);
+            assert_non_null(strstr(error.message, "out of memory"));
+            refused++;
+        }
+        lr_bvh_destroy(bvh);
+    }
+    assert_in_range(refused, 3, 9);
+    mesh_free(&m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -253,7 +299,7 @@ int main(void)
         cmocka_unit_test(test_cost),       cmocka_unit_test(test_quality),
         cmocka_unit_test(test_threads),    cmocka_unit_test(test_depth),
         cmocka_unit_test(test_coincident), cmocka_unit_test(test_extremes),
-        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_refused),    cmocka_unit_test(test_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
