@@ -44,7 +44,7 @@ typedef struct lr_bvh_options {
  * "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007). The nodes and their order
  * depend on the boxes, leaf_size and box_cost alone, not on the threads. No boxes make a
  * hierarchy without nodes. `boxes` is only read; options may be NULL. The caller destroys *bvh,
- * which is NULL after an error. At its peak it holds at most 132 bytes a primitive beside the
+ * which is NULL after an error. At its peak it holds about 135 bytes a primitive beside the
  * boxes. LR_ERROR_ARGUMENT: a box that is not finite or whose min exceeds its max (the message
  * names the first by its index), an option out of range, more than LR_BVH_MAX_COUNT boxes. */
 lr_status lr_bvh_create(const lr_bvh_box *boxes, uint32_t count, const lr_bvh_options *options,
