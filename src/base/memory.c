@@ -2,10 +2,26 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 void *lr_alloc(size_t count, size_t size)
 {
     return calloc(count ? count : 1, size ? size : 1);
+}
+
+void *lr_alloc_large(size_t count, size_t size)
+{
+    const size_t page = (size_t)2 << 20;
+    size_t bytes;
+    if (__builtin_mul_overflow(count, size, &bytes) || bytes > PTRDIFF_MAX - page)
+        return NULL;
+    if (bytes < 2 * page)
+        return malloc(bytes ? bytes : 1);
+    bytes = (bytes + page - 1) / page * page;
+    void *memory = aligned_alloc(page, bytes);
+    if (memory)
+        (void)madvise(memory, bytes, MADV_HUGEPAGE);
+    return memory;
 }
 
 char *lr_string_copy(const char *text, size_t length)

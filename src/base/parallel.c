@@ -24,17 +24,23 @@ static void *run(void *argument)
     }
 }
 
-void lr_run_parallel(uint32_t parts, void (*work)(void *context, uint32_t part), void *context)
+void lr_run_parallel_on(uint32_t threads, uint32_t parts,
+                        void (*work)(void *context, uint32_t part), void *context)
 {
     queue q = {.parts = parts, .work = work, .context = context};
-    pthread_t threads[THREADS_MAX - 1];
-    long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    int wanted = processors > THREADS_MAX ? THREADS_MAX : (int)processors, started = 0;
+    pthread_t others[THREADS_MAX - 1];
+    long available = threads ? (long)threads : sysconf(_SC_NPROCESSORS_ONLN);
+    int wanted = available > THREADS_MAX ? THREADS_MAX : (int)available, started = 0;
     /* Threads that cannot be had leave their share to the others. */
     while (started < wanted - 1 && (uint32_t)started + 1 < parts &&
-           pthread_create(&threads[started], NULL, run, &q) == 0)
+           pthread_create(&others[started], NULL, run, &q) == 0)
         started++;
     run(&q);
     while (started > 0)
-        pthread_join(threads[--started], NULL);
+        pthread_join(others[--started], NULL);
+}
+
+void lr_run_parallel(uint32_t parts, void (*work)(void *context, uint32_t part), void *context)
+{
+    lr_run_parallel_on(0, parts, work, context);
 }

@@ -9,4 +9,9 @@
  * done. A result must not depend on the order: parts write to places of their own. */
 void lr_run_parallel(uint32_t parts, void (*work)(void *context, uint32_t part), void *context);
 
+/* The same on `threads` threads (at most 16), also where there are fewer processors; 0: as many as
+ * these. */
+void lr_run_parallel_on(uint32_t threads, uint32_t parts,
+                        void (*work)(void *context, uint32_t part), void *context);
+
 #endif

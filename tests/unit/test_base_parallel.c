@@ -1,4 +1,4 @@
-/* Every part is worked on once, whatever their number. */
+/* Every part is worked on once, whatever their number and the threads'. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -20,10 +20,13 @@ static void test_parts(void **state)
     (void)state;
     static const uint32_t parts[] = {0, 1, 2, 17, PARTS_MAX - 1};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-        _Atomic int counts[PARTS_MAX] = {0};
-        lr_run_parallel(parts[i], count, counts);
-        for (uint32_t k = 0; k < PARTS_MAX; k++)
-            assert_int_equal(counts[k], k < parts[i]);
+        for (uint32_t threads = 0; threads <= 20; threads += 5) {
+            _Atomic int counts[PARTS_MAX] = {0};
+            lr_run_parallel_on(threads, parts[i], count, counts);
+            lr_run_parallel(parts[i], count, counts);
+            for (uint32_t k = 0; k < PARTS_MAX; k++)
+                assert_int_equal(counts[k], k < parts[i] ? 2 : 0);
+        }
     }
 }
 
