@@ -23,8 +23,8 @@ void main()
     vec2 position = vec2(pixel) + sample_position(pixel, work.first_sample + gl_WorkGroupID.z);
     uint in_tile = at.y * work.tile_width + at.x;
     uint slot = gl_WorkGroupID.z * (work.tile_width * work.tile_height) + in_tile;
+    atomicAdd(film[in_tile * uint(LR_FILM_WORDS) + uint(LR_FILM_SAMPLES)], 1u);
     store_ray(slot, gpu_ray(frame.origin, in_tile, camera_direction(position),
                             LR_KIND_PRIMARY << LR_STATE_KIND_SHIFT, vec3(1.0), 0u, frame.inside0,
                             frame.inside1, frame.inside2, frame.inside3));
-    atomicAdd(film[in_tile * uint(LR_FILM_WORDS) + uint(LR_FILM_SAMPLES)], 1u);
 }

@@ -118,15 +118,16 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, uvec3 ids, gpu_materia
             atomicAdd(counters.dropped_nesting, 1u);
     }
 
-    uint slot;
-    TAKE_SLOT(counters.rays, emit_mirrored, slot)
-    if (emit_mirrored)
-        emit(slot, mirrored, ray.pixel, s, n);
-    TAKE_SLOT(counters.rays, emit_through, slot)
-    if (emit_through)
-        emit(slot, through, ray.pixel, s, n);
+    // The stores come last: on a CPU an atomic waits for all stores before it.
+    uint mirrored_slot, through_slot;
+    TAKE_SLOT(counters.rays, emit_mirrored, mirrored_slot)
+    TAKE_SLOT(counters.rays, emit_through, through_slot)
     COUNT(counters.reflected, uint(emit_mirrored))
     COUNT(counters.refracted, uint(emit_through && !hidden))
+    if (emit_mirrored)
+        emit(mirrored_slot, mirrored, ray.pixel, s, n);
+    if (emit_through)
+        emit(through_slot, through, ray.pixel, s, n);
     return !hidden;
 }
 

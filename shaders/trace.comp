@@ -29,16 +29,13 @@ void main()
     bool hit = wanted && found.primitive != LR_PRIMITIVE_NONE;
     uint slot;
     TAKE_SLOT(counters.hits, hit, slot)
-    if (hit) {
-        if ((slot & (uint(LR_GROUP_SIZE) - 1u)) == 0u)
-            atomicAdd(counters.hit_groups, 1u);
-        store_hit(slot, gpu_hit(index, found.t, found.primitive, 0u));
-    }
+    if (hit && (slot & (uint(LR_GROUP_SIZE) - 1u)) == 0u)
+        atomicAdd(counters.hit_groups, 1u);
     uint kind = (ray.state & LR_STATE_KIND) >> LR_STATE_KIND_SHIFT;
     COUNT(counters.reflected_hits, uint(hit && kind == LR_KIND_REFLECTED))
     COUNT(counters.refracted_hits, uint(hit && kind == LR_KIND_REFRACTED))
     COUNT(counters.traced, uint(wanted))
-    if (wanted && found.primitive == LR_PRIMITIVE_NONE) {
+    if (wanted && !hit) {
         film_sum sum = film_zero();
         vec3 fog;
         vec3 weight = weight_after(ray, found.t, fog);
@@ -47,4 +44,7 @@ void main()
         film_accumulate(sum, weight * background(ray.direction));
         film_add(ray.pixel, sum);
     }
+    // Last, because on a CPU an atomic waits for all stores before it.
+    if (hit)
+        store_hit(slot, gpu_hit(index, found.t, found.primitive, 0u));
 }
