@@ -109,9 +109,10 @@ float ex_pow(float x, float y)
     return y == 0.0 ? 1.0 : (x < 7.888609052210118e-31 ? 0.0 : r);
 }
 
-bool ex_is_finite(float x)
+// Whether all components are finite.
+bool ex_is_finite(vec3 v)
 {
-    return (floatBitsToUint(x) & 0x7F800000u) != 0x7F800000u;
+    return all(notEqual(floatBitsToUint(v) & 0x7F800000u, uvec3(0x7F800000u)));
 }
 
 #endif

@@ -41,8 +41,7 @@ uvec2 film_fixed(float value)
 
 void film_accumulate(inout film_sum sum, vec3 value)
 {
-    uvec3 exponents = floatBitsToUint(value) & 0x7F800000u;
-    bool finite = all(notEqual(exponents, uvec3(0x7F800000u)));
+    bool finite = ex_is_finite(value);
     sum.non_finite += uint(!finite);
     bool above = any(greaterThanEqual(value, vec3(LR_FILM_MAX)));
     sum.saturated += uint(finite) & uint(above);

@@ -36,6 +36,6 @@ void main()
     else if (which == 9u)
         result.xyz = ex_mix(a.xyz, b.xyz, b.w);
     else
-        result.x = ex_is_finite(a.x) ? 1.0 : 0.0;
+        result.x = ex_is_finite(a.xxx) ? 1.0 : 0.0;
     found[i] = result;
 }
