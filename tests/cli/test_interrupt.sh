@@ -36,9 +36,9 @@ for name in SIGINT SIGTERM SIGHUP; do
     done
 done
 
-# An old picture stays as it was.
+# An old picture stays as it was. Without --foreground timeout sends the signal twice.
 echo old >"$folder/x.ppm"
-timeout -s INT 1 "$LAVARAY" render -q $small -o "$folder/x.ppm" --size 2048x2048 --spp 1024 2>/dev/null
+timeout --foreground -s INT 1 "$LAVARAY" render -q $small -o "$folder/x.ppm" --size 2048x2048 --spp 1024 2>/dev/null
 [ "$(cat "$folder/x.ppm")" = old ] || problem 'the old picture was touched'
 [ "$(ls -A "$folder")" = x.ppm ] || problem "left behind: $(ls -A "$folder")"
 finish
