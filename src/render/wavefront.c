@@ -16,7 +16,7 @@
 
 /* Rays handed to a device at once: as many as it takes to fill a GPU, or as caches hold. */
 #define CHUNK_GPU 262144
-#define CHUNK_SOFTWARE 65536
+#define CHUNK_SOFTWARE 131072
 #define CHUNK_MIN 256
 
 static uint32_t at_least(uint32_t value, uint32_t least)
