@@ -9,7 +9,7 @@
 
 uint medium_of(gpu_ray ray)
 {
-    return has_media ? media_top(uvec4(ray.media0, ray.media1, ray.media2, ray.media3)) : 0u;
+    return has_media ? media_top(ray_media(ray)) : 0u;
 }
 
 // What is left of light after t metres.

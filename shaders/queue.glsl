@@ -6,6 +6,17 @@
 
 const uint ray_rows = 4u;
 
+uvec4 ray_media(gpu_ray ray)
+{
+    return uvec4(ray.media0, ray.media1, ray.media2, ray.media3);
+}
+
+// LR_KIND_*
+uint ray_kind(gpu_ray ray)
+{
+    return (ray.state & LR_STATE_KIND) >> LR_STATE_KIND_SHIFT;
+}
+
 uvec4 ray_row(uint row)
 {
     if (texel_queues)
@@ -35,7 +46,7 @@ void store_ray(uint index, gpu_ray ray)
     rays_out[at + 1u] = pack_row(ray.direction, ray.state);
     rays_out[at + 2u] = pack_row(ray.weight, 0u);
     if (has_media)
-        rays_out[at + 3u] = uvec4(ray.media0, ray.media1, ray.media2, ray.media3);
+        rays_out[at + 3u] = ray_media(ray);
 }
 
 gpu_hit load_hit(uint index)

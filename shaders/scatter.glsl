@@ -52,7 +52,7 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, uvec3 ids, gpu_materia
 {
     bool entering = ex_dot(ray.direction, s.normal) < 0.0;
     float c1 = min(max(-ex_dot(ray.direction, n), 0.0), 1.0);
-    uvec4 media = uvec4(ray.media0, ray.media1, ray.media2, ray.media3);
+    uvec4 media = ray_media(ray);
     uvec4 beyond = media;
     bool solid = has_media && (ids.y & LR_FLAG_SOLID) != 0u && (ids.y & LR_FLAG_TRANSPARENT) != 0u;
     uint depth = ray.state & LR_STATE_DEPTH;
@@ -106,7 +106,7 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, uvec3 ids, gpu_materia
     if (wanted && hidden) {
         // The surface lies inside a medium that fills the space on both sides: as if it were not
         // there. The ray goes on as the same ray.
-        uint kind = (ray.state & LR_STATE_KIND) >> LR_STATE_KIND_SHIFT;
+        uint kind = ray_kind(ray);
         uint on_kind = kind == LR_KIND_PRIMARY ? LR_KIND_REFRACTED : kind;
         through = child(weight, ray.direction, -1.0, beyond,
                         depth | (on_kind << LR_STATE_KIND_SHIFT) |

@@ -57,6 +57,11 @@ void set_ray(inout shadow_rays rays, uint slot, vec4 ray, uint shadowed)
     rays.shadowed = replaced(rays.shadowed, slot, shadowed);
 }
 
+vec3 direction_of(shadow_rays rays, uint l)
+{
+    return vec3(pick(rays.x, l), pick(rays.y, l), pick(rays.z, l));
+}
+
 bool crosses(vec2 crossing, float t_max)
 {
     return (crossing.x > 0.0 && crossing.x < t_max) || (crossing.y > 0.0 && crossing.y < t_max);
@@ -132,9 +137,9 @@ uint first_of(uvec4 v)
         uvec4 left = bits & (kind_bits);                                                           \
         if (left != uvec4(0u))                                                                     \
             for (;;) {                                                                             \
-                uint l = first_of(left);                                                                 \
+                uint l = first_of(left);                                                           \
                 uint mine = pick(left, l), i = first + lowest_bit(mine);                           \
-                vec3 d = vec3(pick(rays.x, l), pick(rays.y, l), pick(rays.z, l));                  \
+                vec3 d = direction_of(rays, l);                                                    \
                 float t_max = pick(rays.t_max, l);                                                 \
                 bool dark = test;                                                                  \
                 left = replaced(left, l, dark ? 0u : mine & (mine - 1u));                          \
@@ -151,7 +156,7 @@ void trace_shadows(inout shadow_rays rays, vec3 o, uint most)
             uvec4 bits = uvec4(0u);
             gpu_plane p = load_plane(first);
             for (uint l = 0u;;) {
-                vec3 d = vec3(pick(rays.x, l), pick(rays.y, l), pick(rays.z, l));
+                vec3 d = direction_of(rays, l);
                 vec2 crossing = intersect_plane(o, d, p.normal, p.offset);
                 bits = replaced(bits, l, crosses(crossing, pick(rays.t_max, l)) ? 1u : 0u);
                 l++;
@@ -177,7 +182,7 @@ void trace_shadows(inout shadow_rays rays, vec3 o, uint most)
             for (uint at = 0u;;) {
                 vec4 held = load_ball(first + at, stop);
                 for (uint l = 0u;;) {
-                    vec3 d = vec3(pick(rays.x, l), pick(rays.y, l), pick(rays.z, l));
+                    vec3 d = direction_of(rays, l);
                     uint found = batch_candidates(held, o, d) << (at & 31u);
                     bits = replaced(bits, l, pick(bits, l) | found);
                     l++;

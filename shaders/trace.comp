@@ -31,7 +31,7 @@ void main()
     TAKE_SLOT(counters.hits, hit, slot)
     if (hit && (slot & (uint(LR_GROUP_SIZE) - 1u)) == 0u)
         atomicAdd(counters.hit_groups, 1u);
-    uint kind = (ray.state & LR_STATE_KIND) >> LR_STATE_KIND_SHIFT;
+    uint kind = ray_kind(ray);
     COUNT(counters.reflected_hits, uint(hit && kind == LR_KIND_REFLECTED))
     COUNT(counters.refracted_hits, uint(hit && kind == LR_KIND_REFRACTED))
     COUNT(counters.traced, uint(wanted))
