@@ -42,12 +42,13 @@ static void plan(lr_wavefront *w, const lr_render_options *options)
     bool software = w->device->info.software;
     uint32_t chunk = at_most(fitting, software ? CHUNK_SOFTWARE : CHUNK_GPU);
     chunk = at_least(chunk, CHUNK_MIN);
+    uint32_t pixels = chunk;
     /* A tile whose samples all fit in half a chunk keeps the film in the cache as well. */
-    uint32_t samples = at_least(w->scene->frame.samples, 1);
+    if (software)
+        pixels =
+            at_most(chunk, at_least(chunk / 2 / at_least(w->scene->frame.samples, 1), 64 * 64));
     w->tile_size = 256;
-    while (w->tile_size > 8 &&
-           (w->tile_size * w->tile_size > chunk ||
-            (software && w->tile_size > 64 && w->tile_size * w->tile_size > chunk / 2 / samples)))
+    while (w->tile_size > 8 && w->tile_size * w->tile_size > pixels)
         w->tile_size /= 2;
     if (options->chunk_rays)
         chunk = options->chunk_rays;
@@ -58,14 +59,19 @@ static void plan(lr_wavefront *w, const lr_render_options *options)
     w->lights_at_once = at_most(at_once, at_least(lights, 1));
 }
 
+/* Bytes of a queue that has room for the children of one chunk. */
+static VkDeviceSize queue_size(const lr_wavefront *w)
+{
+    return 2 * sizeof(struct gpu_ray) * (VkDeviceSize)w->chunk_rays;
+}
+
 static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *error)
 {
     uint32_t constants[LR_SPEC_COUNT];
     memcpy(constants, w->scene->constants, sizeof constants);
     uint32_t limit = w->device->limits.maxTexelBufferElements;
-    VkDeviceSize queue_size = 2 * sizeof(struct gpu_ray) * (VkDeviceSize)w->chunk_rays;
     constants[LR_SPEC_TEXEL_LOADS] = texel_loads;
-    constants[LR_SPEC_TEXEL_QUEUES] = texel_loads && queue_size / 16 <= limit;
+    constants[LR_SPEC_TEXEL_QUEUES] = texel_loads && queue_size(w) / 16 <= limit;
     constants[LR_SPEC_SHUFFLE] = w->device->shuffle_size >= LR_BATCH;
     const struct {
         const uint32_t *words;
@@ -136,9 +142,8 @@ static lr_status open_queue(lr_wavefront *w, lr_queue *queue, lr_error *error)
         return LR_OK;
     if (w->unused_count == 0) {
         lr_buffer *buffer = &w->pool[w->pool_count];
-        lr_status status = lr_buffer_create(
-            w->device, LR_BUFFER_TEXEL, 2 * sizeof(struct gpu_ray) * (VkDeviceSize)w->chunk_rays,
-            "the queue of rays", buffer, error);
+        lr_status status = lr_buffer_create(w->device, LR_BUFFER_TEXEL, queue_size(w),
+                                            "the queue of rays", buffer, error);
         if (status)
             return status;
         w->pool_count++;
