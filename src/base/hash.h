@@ -7,4 +7,8 @@
 /* The hash of size bytes as 64 lower-case hexadecimal digits. */
 void lr_hash_bytes(const void *bytes, size_t size, char hash[65]);
 
+
+/* A digest of 32 bytes as text. */
+void lr_hash_text(const unsigned char digest[32], char hash[65]);
+
 #endif

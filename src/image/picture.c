@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/hash.h"
 
 void lr_picture_free(lr_picture *picture)
 {
@@ -41,11 +42,7 @@ void lr_picture_hash(const lr_picture *picture, char hash[65])
     }
     SHA256Update(&context, block, used);
     SHA256Final(digest, &context);
-    for (size_t i = 0; i < sizeof digest; i++) {
-        hash[2 * i] = "0123456789abcdef"[digest[i] >> 4];
-        hash[2 * i + 1] = "0123456789abcdef"[digest[i] & 15];
-    }
-    hash[64] = 0;
+    lr_hash_text(digest, hash);
 }
 
 /* Plain ASCII, unlike strcasecmp, which asks the locale. */
