@@ -37,6 +37,9 @@ extern const command command_render, command_devices, command_doctor, command_va
 void print_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void print_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* Prints what is wrong with the command line and where help is; returns EXIT_USAGE. */
+int wrong_usage(const command *self, const char *text);
+
 /* Whether stderr is a terminal that escape sequences can be sent to. */
 bool terminal_present(void);
 /* The same, and NO_COLOR does not forbid colours. */

@@ -109,12 +109,6 @@ static const option options[] = {
      .help = "no summary: the exit code tells"},
 };
 
-static int wrong_usage(const command *self, const char *text)
-{
-    print_error("%s; see lavaray %s --help", text, self->name);
-    return EXIT_USAGE;
-}
-
 static int set(const command *self, lr_compare_options *to, const char *name, const char *value)
 {
     lr_error error = {0};

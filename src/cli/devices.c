@@ -1,14 +1,13 @@
 #include "cli/devices.h"
 
 #include "cli/cli.h"
+#include "cli/json.h"
 #include "cli/self_test.h"
 
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <jansson.h>
 
 typedef struct values {
     bool json, self_test;
@@ -114,7 +113,7 @@ static void print_list(const device_entry *entries, uint32_t count)
     }
 }
 
-static bool print_json(const device_entry *entries, uint32_t count)
+static int print_json(const device_entry *entries, uint32_t count)
 {
     json_t *list = json_array();
     for (uint32_t i = 0; i < count; i++) {
@@ -126,15 +125,7 @@ static bool print_json(const device_entry *entries, uint32_t count)
                             "usable", e->opened, "exact", e->opened && e->exact, "auto",
                             e->automatic, "missing", e->opened ? "" : e->trouble));
     }
-    char *text = json_dumps(list, JSON_INDENT(2));
-    json_decref(list);
-    if (!text) {
-        print_error("cannot express the list as JSON");
-        return false;
-    }
-    puts(text);
-    free(text);
-    return true;
+    return write_json(list, "-");
 }
 
 static int run(const command *self, int argc, char **argv)
@@ -162,7 +153,8 @@ static int run(const command *self, int argc, char **argv)
         code = entries[i].opened ? EXIT_FINE : code;
     }
     if (v.json) {
-        code = print_json(entries, count) ? code : EXIT_DEVICE;
+        int printed = print_json(entries, count);
+        code = printed == EXIT_FINE ? code : printed;
     } else {
         print_list(entries, count);
     }

@@ -59,6 +59,12 @@ void print_error(const char *format, ...)
     va_end(arguments);
 }
 
+int wrong_usage(const command *self, const char *text)
+{
+    print_error("%s; see lavaray %s --help", text, self->name);
+    return EXIT_USAGE;
+}
+
 void print_warning(const char *format, ...)
 {
     va_list arguments;

@@ -157,12 +157,6 @@ static const option options[] = {
      .for_tests = true},
 };
 
-static int wrong_usage(const command *self, const char *text)
-{
-    print_error("%s; see lavaray %s --help", text, self->name);
-    return EXIT_USAGE;
-}
-
 static lr_format format_named(const char *name)
 {
     char path[16];

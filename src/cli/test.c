@@ -136,12 +136,6 @@ static const option options[] = {
      .help = "say nothing of cases that pass"},
 };
 
-static int wrong_usage(const command *self, const char *text)
-{
-    print_error("%s; see lavaray %s --help", text, self->name);
-    return EXIT_USAGE;
-}
-
 /* ---- What is to be done -------------------------------------------------------------------- */
 
 static int check_values(const command *self, const values *v, const char *folder)
