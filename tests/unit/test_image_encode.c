@@ -11,26 +11,11 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "temporary_folder.h"
+
 #include "base/file.h"
 #include "base/exact.h"
 #include "image/image_internal.h"
-
-static char folder[64];
-
-static int setup(void **state)
-{
-    (void)state;
-    strcpy(folder, "/tmp/lavaray-image-XXXXXX");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
-    return system(command);
-}
 
 /* Every sample differs from its neighbours; some lie outside 0..1. */
 static lr_picture make_picture(uint32_t width, uint32_t height)

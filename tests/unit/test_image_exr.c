@@ -4,25 +4,9 @@
 #include <unistd.h>
 
 #include "image_tests.h"
+#include "temporary_folder.h"
 
 #include "image/image_internal.h"
-
-static char folder[64];
-
-static int setup(void **state)
-{
-    (void)state;
-    strcpy(folder, "/tmp/lavaray-exr-XXXXXX");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
-    return system(command);
-}
 
 static uint32_t random_bits(uint32_t *seed)
 {

@@ -4,28 +4,13 @@
 #include <unistd.h>
 
 #include "image_tests.h"
+#include "temporary_folder.h"
 
 #include "base/file.h"
 
 enum { WIDTH = 37, HEIGHT = 23, COUNT = 3 * WIDTH * HEIGHT };
 
-static char folder[64];
 static uint32_t numbers[COUNT]; /* the samples of the picture, 0..maxval */
-
-static int setup(void **state)
-{
-    (void)state;
-    strcpy(folder, "/tmp/lavaray-judges-XXXXXX");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
-    return system(command);
-}
 
 /* Writes in.ppm with random samples, as text that needs no reader or writer of ours. */
 static void write_picture(uint32_t maxval)
