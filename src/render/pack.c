@@ -155,7 +155,8 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
     lr_vec3 up = lr_vec3_cross(right, forward);
     double sine, cosine;
     lr_sincos_degrees(camera->fov / 2, &sine, &cosine);
-    double pixel = 2 * sine / cosine / settings->height;
+    uint32_t rows = settings->height;
+    double pixel = 2 * sine / cosine / (camera->fov_to_centers && rows > 1 ? rows - 1 : rows);
     packed->frame = (struct gpu_frame){
         .origin = lr_pack_vec3(camera->from),
         .half_width = (float)(settings->width * 0.5),

@@ -264,6 +264,8 @@ static bool pack_object(const lr_object *object, primitive *out)
         return pack_cone(object, out);
     case LR_TRIANGLE:
         return pack_triangle(object, out);
+    case LR_MESH:
+        break;
     }
     return false;
 }

@@ -129,6 +129,9 @@ static extent extent_of(const lr_object *object)
                       lr_vec3_sub(object->triangle.c, object->triangle.a)},
                      2};
         break;
+    case LR_MESH: /* its file's reader checks it */
+        e.edge_count = 0;
+        break;
     }
     return e;
 }

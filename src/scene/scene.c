@@ -148,6 +148,23 @@ void lr_read_scene(lr_reader *reader, const lr_node *root)
         lr_read_objects(reader, objects);
 }
 
+static void free_mesh(lr_mesh *mesh)
+{
+    free(mesh->name);
+    free(mesh->positions);
+    free(mesh->normals);
+    free(mesh->uvs);
+    free(mesh->colors);
+    free(mesh->triangles);
+}
+
+static void free_texture(lr_texture *texture)
+{
+    free(texture->name);
+    free(texture->bytes);
+    free(texture->floats);
+}
+
 void lr_scene_destroy(lr_scene *scene)
 {
     if (!scene)
@@ -156,6 +173,15 @@ void lr_scene_destroy(lr_scene *scene)
         free(scene->cameras[i].name);
     for (uint32_t i = 0; i < scene->material_count; i++)
         free(scene->materials[i].name);
+    for (uint32_t i = 0; i < scene->mesh_count; i++)
+        free_mesh(&scene->meshes[i]);
+    for (uint32_t i = 0; i < scene->texture_count; i++)
+        free_texture(&scene->textures[i]);
+    for (uint32_t i = 0; i < scene->note_count; i++)
+        free(scene->notes[i]);
+    free(scene->meshes);
+    free(scene->textures);
+    free(scene->notes);
     free(scene->cameras);
     free(scene->materials);
     free(scene->objects);

@@ -12,9 +12,35 @@ typedef lr_vec3 lr_color; /* x, y, z are red, green, blue; finite, >= 0 and <= L
 #define LR_COLOR_MAX 1e12
 #define LR_COORDINATE_MAX 1e12 /* |any coordinate|; also after transforms */
 #define LR_LENGTH_MIN 1e-20    /* radii and extents */
-#define LR_OBJECTS_MAX 8192    /* every ray tests every object until there is a BVH */
+#define LR_OBJECTS_MAX 100000  /* written in a scene text */
 #define LR_LIGHTS_MAX 256
 #define LR_MATERIALS_MAX 65535
+#define LR_NONE UINT32_MAX /* instead of an index */
+
+/* How a texture goes on beyond 0..1. */
+typedef enum lr_wrap { LR_WRAP_REPEAT, LR_WRAP_CLAMP, LR_WRAP_MIRROR } lr_wrap;
+
+/* A picture for surfaces. Coordinates (0, 0) are the top left corner of the top left texel. */
+typedef struct lr_texture {
+    char *name; /* the file that stands in messages */
+    uint32_t width, height;
+    lr_wrap wrap_u, wrap_v;
+    uint8_t *bytes; /* 4 a texel, top row first: sRGB red, green, blue, and alpha; or NULL, and */
+    float *floats;  /* 3 a texel, top row first: linear red, green, blue >= 0 */
+} lr_texture;
+
+/* Triangles with what belongs to their corners, stored once for all the objects that show them. All
+ * numbers are finite, |positions| up to LR_COORDINATE_MAX, all indices in range. */
+typedef struct lr_mesh {
+    char *name;          /* the file and the part of it that stand in messages */
+    float *positions;    /* 3 a vertex, in the mesh's own space */
+    float *normals;      /* 3 a vertex, of unit length; NULL: flat triangles */
+    float *uvs;          /* texture coordinates, 2 a vertex; NULL: none */
+    float *colors;       /* 3 a vertex, linear, 0..1, times the material's colour; NULL: none */
+    uint32_t *triangles; /* 3 vertices a triangle, counter-clockwise as seen from outside */
+    uint32_t vertex_count, triangle_count;
+    bool closed; /* it encloses a space, which a transmitting material fills */
+} lr_mesh;
 
 typedef enum lr_pattern_kind {
     LR_PATTERN_NONE, /* colors[0] everywhere */
@@ -22,12 +48,14 @@ typedef enum lr_pattern_kind {
     LR_PATTERN_STRIPES,
     LR_PATTERN_GRADIENT,
     LR_PATTERN_RINGS,
+    LR_PATTERN_IMAGE, /* a texture by the mesh's texture coordinates, times colors[0] */
 } lr_pattern_kind;
 
 typedef struct lr_pattern {
     lr_pattern_kind kind;
     bool object_space; /* follows the object's transform; otherwise fixed in the world */
     lr_color colors[2];
+    uint32_t texture;  /* image: which */
     double size;       /* of a checker's cell, a stripe, a ring; > 0 */
     lr_vec3 origin;    /* rings: centre; gradient: where colors[0] is */
     lr_vec3 direction; /* stripes: across them; rings: their axis; gradient: from origin to where
@@ -41,12 +69,16 @@ typedef struct lr_material {
     uint32_t line;
     lr_pattern color;
     lr_color ambient, diffuse, specular, reflect, transmit; /* defaults already filled in */
-    double shininess;                                       /* 0..1e6 */
+    lr_color emission; /* light that the surface sends out by itself, seen but lighting nothing */
+    double shininess;  /* 0..1e6 */
     lr_highlight highlight;
     double ior; /* 0.01..100 */
     bool fresnel;
     lr_color absorption; /* per metre, Beer-Lambert: exp(-absorption * distance) */
     int priority;        /* -100..100: which of two overlapping media fills the overlap */
+    double
+        alpha_cutoff; /* where its texture's alpha is below, there is no surface; 0: everywhere */
+    bool one_sided;   /* from behind, flats, triangles and open cones are not there */
 } lr_material;
 
 typedef enum lr_object_kind {
@@ -58,6 +90,7 @@ typedef enum lr_object_kind {
     LR_CYLINDER,
     LR_CONE,
     LR_TRIANGLE,
+    LR_MESH,
 } lr_object_kind;
 
 typedef struct lr_object {
@@ -94,6 +127,7 @@ typedef struct lr_object {
         struct {
             lr_vec3 a, b, c; /* not on one line; normal (b - a) x (c - a) */
         } triangle;
+        uint32_t mesh; /* index of the scene's meshes */
     };
 } lr_object;
 
@@ -117,6 +151,7 @@ typedef struct lr_camera {
     uint32_t line;
     lr_vec3 from, to, up; /* from != to, up not along the view */
     double fov;           /* vertical, 0 < fov < 180 */
+    bool fov_to_centers;  /* fov ends at the centres of the outer rows of pixels, as in NFF */
 } lr_camera;
 
 struct lr_scene {
@@ -128,7 +163,13 @@ struct lr_scene {
     uint32_t material_count;
     lr_object *objects;
     uint32_t object_count; /* >= 1 */
-    lr_light *lights;      /* empty only when the scene says `lights: []` */
+    lr_mesh *meshes;
+    uint32_t mesh_count;
+    lr_texture *textures;
+    uint32_t texture_count;
+    char **notes; /* what an import left out and why, one line each */
+    uint32_t note_count;
+    lr_light *lights; /* empty only when the scene says `lights: []` */
     uint32_t light_count;
     bool default_light; /* no `lights` key: the renderer adds one that suits the camera */
     lr_color ambient;

@@ -91,8 +91,8 @@ static void test_sizes(void **state)
     expect_in(repeat("a: ", "x", 16000000, "\n"), "s.yaml:1:1: unknown key \"a\"");
     expect_in(repeat("[", "1,", 7000000, "]"), "more than 500000 commas and brackets on one line");
     expect_in(repeat("", "- 1\n", 1100000, ""), "the scene has more than 1000000 values");
-    expect_in(repeat("camera: {}\nobjects:\n", "- sphere: {}\n", 8193, ""),
-              "s.yaml:8195:3: more than 8192 objects");
+    expect_in(repeat("camera: {}\nobjects:\n", "- sphere: {}\n", 100001, ""),
+              "s.yaml:100003:3: more than 100000 objects");
     expect_in(repeat("lights:\n", "- directional: {direction: [0, -1, 0]}\n", 257, ""),
               "257 lights, expected at most 256");
     expect_in(repeat("camera: {}\nobjects:\n- sphere: {radius: ", "1", 300, "}\n"),
@@ -120,8 +120,10 @@ static void test_bombs(void **state)
                 "    {group: *b}, {group: *b}, {group: *b}, {group: *b}, {group: *b}]}\n"
                 "- group: &d {objects: [{group: *c}, {group: *c}, {group: *c}, {group: *c},\n"
                 "    {group: *c}, {group: *c}, {group: *c}, {group: *c}, {group: *c}]}\n"
-                "- group: {objects: [{group: *d}, {group: *d}, {group: *d}, {group: *d}]}\n",
-                "more than 8192 objects"));
+                "- group: &e {objects: [{group: *d}, {group: *d}, {group: *d}, {group: *d}]}\n"
+                "- group: &f {objects: [{group: *e}, {group: *e}, {group: *e}, {group: *e}]}\n"
+                "- group: {objects: [{group: *f}, {group: *f}]}\n",
+                "more than 100000 objects"));
 }
 
 /* libfyaml leaks the text of a quoted scalar of many pieces; a sanitizer watches here. */

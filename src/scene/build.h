@@ -1,0 +1,27 @@
+/* Scenes made by importers, element by element. */
+#ifndef LR_SCENE_BUILD_H
+#define LR_SCENE_BUILD_H
+
+#include "scene/scene.h"
+
+/* A scene that grows, with the room that its arrays have. */
+typedef struct lr_scene_builder {
+    lr_scene *scene;
+    uint32_t camera_capacity, material_capacity, object_capacity, light_capacity;
+    uint32_t mesh_capacity, texture_capacity, note_capacity;
+} lr_scene_builder;
+
+/* Each appends one zeroed element and returns it, NULL when memory is out. The scene owns what the
+ * element then points to. Valid until the next call for the same array. */
+lr_camera *lr_scene_add_camera(lr_scene_builder *builder);
+lr_material *lr_scene_add_material(lr_scene_builder *builder);
+lr_object *lr_scene_add_object(lr_scene_builder *builder);
+lr_light *lr_scene_add_light(lr_scene_builder *builder);
+lr_mesh *lr_scene_add_mesh(lr_scene_builder *builder);
+lr_texture *lr_scene_add_texture(lr_scene_builder *builder);
+
+/* Notes what an import left out and why. False when memory is out. */
+bool lr_scene_add_note(lr_scene_builder *builder, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+#endif
