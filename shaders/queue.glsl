@@ -61,7 +61,7 @@ gpu_hit load_hit(uint index)
 
 void store_hit(uint index, gpu_hit hit)
 {
-    hits[index] = uvec4(hit.ray, floatBitsToUint(hit.t), hit.primitive, 0u);
+    hits[index] = uvec4(hit.ray, floatBitsToUint(hit.t), hit.primitive, hit.object);
 }
 
 #endif
