@@ -32,7 +32,7 @@ void enter_instance(uint k, gpu_instance place)
     ray_o[k] = instance_point(place, world_o[k]);
     ray_d[k] = instance_vector(place, world_d[k]);
     mesh_ray[k] = shear_ray(ray_d[k]);
-    box_ready(k, place.reach);
+    slab_ready(k, place.reach);
 }
 
 // Back in the world.
@@ -41,7 +41,7 @@ void leave_instance(uint k)
     ray_o[k] = world_o[k];
     ray_d[k] = world_d[k];
     if (has_instance_tree)
-        box_ready(k, frame.reach);
+        slab_ready(k, frame.reach);
 }
 
 #endif

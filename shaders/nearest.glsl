@@ -29,20 +29,19 @@ void keep_crossing(uint k, bool valid, vec2 crossing, uint primitive, uint objec
 void nearest_sphere(uint i, bool valid)
 {
     gpu_sphere s = joint_sphere(i);
-    EACH_RAY keep_crossing(k, valid,
-                           intersect_sphere(ray_o[k], ray_d[k], ex_rcp(ex_dot(ray_d[k], ray_d[k])), s),
-                           i, s.object);
+    EACH_RAY keep_crossing(k, valid, intersect_sphere(ray_o[k], ray_d[k], ray_inv_a[k], s), i,
+                           s.object);
 }
 
 void nearest_flat(uint i, bool valid)
 {
-    gpu_flat f = load_flat(i);
+    gpu_flat f = joint_flat(i);
     EACH_RAY keep_crossing(k, valid, intersect_flat(ray_o[k], ray_d[k], f), i, f.object);
 }
 
 void nearest_solid(uint i, bool valid)
 {
-    gpu_solid s = load_solid(i);
+    gpu_solid s = joint_solid(i);
     EACH_RAY keep_crossing(k, valid, intersect_solid(ray_o[k], ray_d[k], s, i), i, s.object);
 }
 
@@ -81,11 +80,13 @@ void main()
         gpu_ray ray = load_ray(work.first + min(index, max(work.count, 1u) - 1u));
         ray_o[k] = ray.origin;
         ray_d[k] = ray.direction;
+        ray_inv_a[k] = ex_rcp(ex_dot(ray.direction, ray.direction));
         ray_limit[k] = index < work.count ? LR_T_MAX : -1.0;
         found_primitive[k] = LR_PRIMITIVE_NONE;
         found_object[k] = 0xFFFFFFFFu;
         found_order[k] = 0u;
-        box_ready(k, frame.reach);
+        if (has_world_tree)
+            slab_ready(k, frame.reach);
     }
     VISIT_KIND(has_planes, false, frame.planes, nearest_plane(i, valid))
     VISIT_KIND(has_spheres, has_sphere_tree, frame.spheres, nearest_sphere(i, valid))

@@ -10,13 +10,12 @@ bool crosses(vec2 crossing, float t_max)
 }
 
 // What one transparent object takes from the light: its transmit colour once per surface, and its
-// absorption over the length inside.
-uvec3 tint(vec2 crossing, float t_max, uint object)
+// absorption over the length inside. `shadow` is the object's record for that.
+uvec3 tint(vec2 crossing, float t_max, uvec4 shadow)
 {
     bool first = crossing.x > 0.0 && crossing.x < t_max;
     bool second = crossing.y > 0.0 && crossing.y < t_max;
     uint surfaces = (first ? 1u : 0u) + (second ? 1u : 0u);
-    uvec4 shadow = load_object_shadow(object);
     uvec3 add = shadow.xyz * surfaces;
     if (has_absorption && surfaces != 0u && shadow.w != 0u) {
         float inside = max(min(crossing.y, t_max) - max(crossing.x, 0.0), 0.0);

@@ -15,6 +15,7 @@ const bool joint = RAYS > 1;
 #define EACH_RAY [[unroll]] for (uint k = 0u; k < uint(RAYS); k++)
 
 vec3 ray_o[RAYS], ray_d[RAYS];
+float ray_inv_a[RAYS]; // 1 / (d . d)
 // The distance within which a ray still looks for hits; -1: it is done.
 float ray_limit[RAYS];
 
@@ -47,12 +48,15 @@ uvec4 hold_rows(uint at, uint rows)
 // Row at + i of those.
 uvec4 held_row(uvec4 held, uint at, uint i)
 {
+    uvec4 row;
     if (joint) {
         uint lane = batch_begin() + i;
-        return uvec4(share(held.x, lane), share(held.y, lane), share(held.z, lane),
-                     share(held.w, lane));
+        row = uvec4(share(held.x, lane), share(held.y, lane), share(held.z, lane),
+                    share(held.w, lane));
+    } else {
+        row = scene_row(at + i);
     }
-    return scene_row(at + i);
+    return row;
 }
 
 gpu_sphere joint_sphere(uint i)
@@ -62,6 +66,28 @@ gpu_sphere joint_sphere(uint i)
     uvec4 a = held_row(held, at, 0u), b = held_row(held, at, 1u);
     return gpu_sphere(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.x), b.y, b.z,
                       b.w);
+}
+
+gpu_flat joint_flat(uint i)
+{
+    uint at = frame.flats.base + 4u * i;
+    uvec4 held = hold_rows(at, 4u);
+    uvec4 a = held_row(held, at, 0u), b = held_row(held, at, 1u);
+    uvec4 c = held_row(held, at, 2u), d = held_row(held, at, 3u);
+    return gpu_flat(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.xyz),
+                    uintBitsToFloat(b.w), uintBitsToFloat(c.xyz), uintBitsToFloat(c.w), d.x, d.y,
+                    d.z, d.w);
+}
+
+gpu_solid joint_solid(uint i)
+{
+    uint at = frame.solids.base + 5u * i;
+    uvec4 held = hold_rows(at, 5u);
+    uvec4 a = held_row(held, at, 0u), b = held_row(held, at, 1u), c = held_row(held, at, 2u);
+    uvec4 d = held_row(held, at, 3u), e = held_row(held, at, 4u);
+    return gpu_solid(uintBitsToFloat(a), uintBitsToFloat(b), uintBitsToFloat(c),
+                     uintBitsToFloat(d.x), uintBitsToFloat(d.y), d.z, d.w, uintBitsToFloat(e.x),
+                     uintBitsToFloat(e.y), e.z, e.w);
 }
 
 gpu_triangle joint_triangle(uint i)

@@ -27,17 +27,14 @@ float greatest(vec3 v)
 bool admit(child c, uint depth)
 {
     float weight = greatest(c.weight);
-    if (weight < LR_WEIGHT_MIN)
-        return false;
-    if (depth >= frame.depth) {
+    bool counts = !(weight < LR_WEIGHT_MIN);
+    bool too_deep = counts && depth >= frame.depth;
+    bool too_weak = counts && !too_deep && weight < frame.min_weight;
+    if (too_deep)
         atomicAdd(counters.dropped_depth, 1u);
-        return false;
-    }
-    if (weight < frame.min_weight) {
+    if (too_weak)
         atomicAdd(counters.dropped_weight, 1u);
-        return false;
-    }
-    return true;
+    return counts && !too_deep && !too_weak;
 }
 
 // A direction that an interpolated normal brought to the wrong side of the surface, brought back.

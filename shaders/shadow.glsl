@@ -68,7 +68,7 @@ bool dim(inout shadow_rays rays, uint l, vec2 crossing, float t_max, uint object
 {
     uvec3 add = crosses(crossing, t_max) ? uvec3(LR_SHADOW_OPAQUE) : uvec3(0u);
     if (has_transparent && (flags & LR_FLAG_TRANSPARENT) != 0u)
-        add = tint(crossing, t_max, object);
+        add = tint(crossing, t_max, load_object_shadow(object));
     if ((flags & LR_FLAG_SHADOW) == 0u)
         add = uvec3(0u);
     uvec3 depth = uvec3(pick(rays.red, l), pick(rays.green, l), pick(rays.blue, l));

@@ -7,9 +7,12 @@
 
 uvec4 shadow_row(uint row)
 {
+    uvec4 value;
     if (texel_queues)
-        return texelFetch(shadow_texels, int(row));
-    return shadow_rays_queue[row];
+        value = texelFetch(shadow_texels, int(row));
+    else
+        value = shadow_rays_queue[row];
+    return value;
 }
 
 gpu_shadow_ray load_shadow_ray(uint index)

@@ -12,16 +12,32 @@ layout(local_size_x = LR_GROUP_SIZE) in;
 uint met = 0u, dark = 0u;  // bit k: ray k met something, and none of its light is left
 uvec3 ray_depth[RAYS];     // optical depths so far, in scenes with transparent shadow casters
 
-// What a primitive takes from ray k.
-void dim(uint k, bool valid, vec2 crossing, uint object, uint flags)
+// What stands in the way: whether its material lets light through, and then its record for shadows.
+struct obstacle {
+    bool there, transparent;
+    uvec4 shadow;
+};
+
+obstacle joint_obstacle(bool valid, uint object, uint flags)
+{
+    uvec4 shadow = uvec4(0u);
+    if (has_transparent) {
+        uint at = frame.objects + 5u * object + 4u;
+        shadow = held_row(hold_rows(at, 1u), at, 0u);
+    }
+    return obstacle(valid && (flags & LR_FLAG_SHADOW) != 0u, (flags & LR_FLAG_TRANSPARENT) != 0u,
+                    shadow);
+}
+
+// What it takes from ray k.
+void dim(uint k, obstacle by, vec2 crossing)
 {
     float t_max = ray_limit[k];
-    bool meets = valid && crosses(crossing, t_max) && (flags & LR_FLAG_SHADOW) != 0u;
-    bool blocked = meets;
+    bool meets = by.there && crosses(crossing, t_max), blocked = meets;
     if (has_transparent) {
         uvec3 depth = uvec3(LR_SHADOW_OPAQUE);
-        if ((flags & LR_FLAG_TRANSPARENT) != 0u)
-            depth = tint(crossing, t_max, object);
+        if (by.transparent)
+            depth = tint(crossing, t_max, by.shadow);
         depth = min(ray_depth[k] + (meets ? depth : uvec3(0u)), uvec3(LR_SHADOW_OPAQUE));
         ray_depth[k] = depth;
         blocked = depth == uvec3(LR_SHADOW_OPAQUE);
@@ -34,37 +50,36 @@ void dim(uint k, bool valid, vec2 crossing, uint object, uint flags)
 void shadow_sphere(uint i, bool valid)
 {
     gpu_sphere s = joint_sphere(i);
-    EACH_RAY dim(k, valid,
-                 intersect_sphere(ray_o[k], ray_d[k], ex_rcp(ex_dot(ray_d[k], ray_d[k])), s),
-                 s.object, s.flags);
+    obstacle by = joint_obstacle(valid, s.object, s.flags);
+    EACH_RAY dim(k, by, intersect_sphere(ray_o[k], ray_d[k], ray_inv_a[k], s));
 }
 
 void shadow_flat(uint i, bool valid)
 {
-    gpu_flat f = load_flat(i);
-    EACH_RAY dim(k, valid, intersect_flat(ray_o[k], ray_d[k], f), f.object, f.flags);
+    gpu_flat f = joint_flat(i);
+    obstacle by = joint_obstacle(valid, f.object, f.flags);
+    EACH_RAY dim(k, by, intersect_flat(ray_o[k], ray_d[k], f));
 }
 
 void shadow_solid(uint i, bool valid)
 {
-    gpu_solid s = load_solid(i);
-    EACH_RAY dim(k, valid, intersect_solid(ray_o[k], ray_d[k], s, i), s.object, s.flags);
+    gpu_solid s = joint_solid(i);
+    obstacle by = joint_obstacle(valid, s.object, s.flags);
+    EACH_RAY dim(k, by, intersect_solid(ray_o[k], ray_d[k], s, i));
 }
 
 void shadow_plane(uint i, bool valid)
 {
     gpu_plane p = load_plane(i);
-    EACH_RAY dim(k, valid, intersect_plane(ray_o[k], ray_d[k], p.normal, p.offset), p.object, p.flags);
+    obstacle by = joint_obstacle(valid, p.object, p.flags);
+    EACH_RAY dim(k, by, intersect_plane(ray_o[k], ray_d[k], p.normal, p.offset));
 }
 
 void shadow_triangle(uint i, bool valid, gpu_instance place)
 {
     gpu_triangle f = joint_triangle(i);
-    EACH_RAY
-    {
-        triangle_hit hit = intersect_triangle(ray_o[k], mesh_ray[k], f);
-        dim(k, valid, vec2(hit.t, -1.0), f.object + place.object, f.flags | place.flags);
-    }
+    obstacle by = joint_obstacle(valid, f.object + place.object, f.flags | place.flags);
+    EACH_RAY dim(k, by, vec2(intersect_triangle(ray_o[k], mesh_ray[k], f).t, -1.0));
 }
 
 void shadow_instance(uint i, bool valid)
@@ -74,6 +89,15 @@ void shadow_instance(uint i, bool valid)
     if (valid)
         VISIT_TREE(place.nodes, shadow_triangle(i, valid, place))
     EACH_RAY leave_instance(k);
+}
+
+// ray_depth[i], by selects: an index that is known only at run time would keep the whole array in
+// memory.
+uvec3 depth_of(uint i)
+{
+    uvec3 depth = uvec3(0u);
+    EACH_RAY depth = mix(depth, ray_depth[k], bvec3(k == i));
+    return depth;
 }
 
 // Number of shadow ray k in the queue.
@@ -91,8 +115,10 @@ void main()
         ray_o[k] = job.origin;
         ray_d[k] = ray.xyz;
         ray_limit[k] = packet_index(k) < work.count ? ray.w : -1.0;
+        ray_inv_a[k] = ex_rcp(ex_dot(ray.xyz, ray.xyz));
         ray_depth[k] = uvec3(0u);
-        box_ready(k, frame.reach);
+        if (has_world_tree)
+            slab_ready(k, frame.reach);
     }
     VISIT_KIND(has_planes, false, frame.planes, shadow_plane(i, valid))
     VISIT_KIND(has_spheres, has_sphere_tree, frame.spheres, shadow_sphere(i, valid))
@@ -110,7 +136,7 @@ void main()
         gpu_shadow_ray job = load_shadow_ray(shadow_index(k));
         vec3 value = job.value;
         if (has_transparent)
-            value = value * light_left(ray_depth[k]);
+            value = value * light_left(depth_of(k));
         bool lit = wanted && ((dark >> (k & 31u)) & 1u) == 0u;
         film_sum sum = film_zero();
         film_accumulate(sum, value);

@@ -10,6 +10,7 @@ enum {
     MAGIC_SWAPPED = 0x03022307,
     MODULE_WORDS_LIMIT = 1 << 26,
 
+    OP_UNDEF = 1,
     OP_SOURCE_CONTINUED = 2,
     OP_SOURCE = 3,
     OP_SOURCE_EXTENSION = 4,
@@ -22,6 +23,7 @@ enum {
     OP_ENTRY_POINT = 15,
     OP_EXECUTION_MODE = 16,
     OP_CAPABILITY = 17,
+    OP_CONSTANT_NULL = 46,
     OP_FUNCTION = 54,
     OP_FUNCTION_END = 56,
     OP_LOAD = 61,
@@ -360,6 +362,18 @@ lr_status lr_spirv_decorate(const uint32_t *words, size_t count, lr_spirv *out, 
 done:
     spirv_index_free(&index);
     return status;
+}
+
+void lr_spirv_define(lr_spirv *module)
+{
+    SPIRV_EACH(at, module->words, module->count)
+    {
+        uint32_t opcode = spirv_opcode(module->words[at]);
+        if (opcode == OP_FUNCTION)
+            break;
+        if (opcode == OP_UNDEF)
+            module->words[at] = 3u << 16 | OP_CONSTANT_NULL;
+    }
 }
 
 static bool has_instruction(const lr_spirv *module, const uint32_t *instruction)

@@ -11,7 +11,7 @@
 #define UNSORTED_MAX 32
 
 #define LEAF_SIZE 2
-#define TESTS_IN_TREES 64
+#define TESTS_IN_TREES 48
 
 static const uint32_t rows_of[LR_LIST_COUNT] = {
     [LR_SPHERES] = sizeof(struct gpu_sphere) / 16,   [LR_FLATS] = sizeof(struct gpu_flat) / 16,

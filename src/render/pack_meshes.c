@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 
-#define LEAF_SIZE 4
+#define LEAF_SIZE 2
 
 /* A triangle on its way into a tree. */
 typedef struct facet {

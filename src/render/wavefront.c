@@ -50,7 +50,7 @@ static bool has_trees(const lr_wavefront *w)
 static void plan(lr_wavefront *w, const lr_render_options *options)
 {
     uint32_t primitives = w->scene->tests_per_ray + 8, lights = w->scene->light_count;
-    uint32_t fitting = TESTS_PER_PASS / primitives / (1 + lights);
+    uint32_t fitting = TESTS_PER_PASS / primitives / (has_trees(w) ? 1 : 1 + lights);
     bool software = w->device->info.software;
     uint32_t chunk = at_most(fitting, software ? CHUNK_SOFTWARE : CHUNK_GPU);
     uint32_t lights_a_segment = at_least(groups_for(lights, LR_SHADOW_LIGHTS), 1);
