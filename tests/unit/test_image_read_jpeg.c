@@ -53,6 +53,13 @@ static void test_refusals(void **state)
     expect_failure(BYTES("\xff\xd8\xff\xd9"), "corrupt: ");
     expect_failure(BYTES("\xff\xd8\xff\xc0\x00\x0b\x08\xff\xff\xff\xff\x01\x01\x11\x00\xff\xd9"),
                    "too large: 65535 x 65535");
+    /* 17 codes of 15 and 240 of 16 bits: more than a byte can tell apart. */
+    expect_failure(BYTES("\xff\xd8\xff\xc4\x00\x13\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00"
+                         "\x00\x00\x00\x00\x11\xf0\xff\xd9"),
+                   "has 257 codes");
+    expect_failure(BYTES("\xff\xd8\xff\xc4\x00\x13\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00"
+                         "\x00\x00\x00\x00\x00\x01\xff\xd9"),
+                   "cut short");
     /* Passes over the pixels beyond any that an encoder writes. */
     size_t size;
     char *bytes = load("progressive.jpg", &size);
