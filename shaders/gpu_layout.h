@@ -47,7 +47,7 @@ typedef struct vec4 {
 #define LR_SPEC_MEDIA 7      /* some object encloses a medium that rays enter */
 #define LR_SPEC_ABSORPTION 8 /* some medium absorbs */
 #define LR_SPEC_FOG 9
-#define LR_SPEC_SCATTER 10 /* some material reflects, transmits or is not everywhere */
+#define LR_SPEC_SCATTER 10 /* some material reflects, transmits or has holes */
 #define LR_SPEC_FRESNEL 11
 #define LR_SPEC_TRANSPARENT 12 /* some shadow caster transmits light */
 #define LR_SPEC_SPECULAR 13
@@ -57,7 +57,7 @@ typedef struct vec4 {
 #define LR_SPEC_TEXEL_QUEUES 17       /* as LR_SPEC_TEXEL_LOADS, for the queues */
 #define LR_SPEC_TRANSPARENT_PLANES 18 /* ... that is a plane */
 #define LR_SPEC_TEXTURES 19
-#define LR_SPEC_CUTOUTS 20 /* some surface is not there everywhere or from both sides */
+#define LR_SPEC_CUTOUTS 20 /* some surface has holes where its picture is transparent */
 #define LR_SPEC_COUNT 21
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
@@ -192,8 +192,7 @@ LR_ROWS(gpu_medium, 1)
 
 #define LR_GPU_FRESNEL 1u
 #define LR_GPU_PHONG 2u
-#define LR_GPU_LIT 4u       /* has ambient, diffuse, specular or emitted light to show */
-#define LR_GPU_ONE_SIDED 8u /* not there from behind, unless the object is solid */
+#define LR_GPU_LIT 4u /* has ambient, diffuse, specular or emitted light to show */
 
 #define LR_MATERIAL_ROWS 9u
 

@@ -55,7 +55,8 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, uvec3 ids, gpu_materia
     float c1 = min(max(-ex_dot(ray.direction, n), 0.0), 1.0);
     uvec4 media = ray_media(ray);
     uvec4 beyond = media;
-    bool solid = has_media && !absent && (ids.y & LR_FLAG_SOLID) != 0u && (ids.y & LR_FLAG_TRANSPARENT) != 0u;
+    bool solid = has_media && (ids.y & LR_FLAG_SOLID) != 0u &&
+                 (ids.y & LR_FLAG_TRANSPARENT) != 0u && !absent;
     uint depth = ray.state & LR_STATE_DEPTH;
 
     bool hidden = absent;

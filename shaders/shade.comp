@@ -92,16 +92,13 @@ void main()
     vec3 color = m.color0;
     if (has_patterns)
         color = pattern_color(m, s.object, s.position, s.normal);
-    bool front = ex_dot(ray.direction, s.normal) < 0.0, absent = false;
-    vec3 n = front ? s.normal : -s.normal;
+    bool absent = false;
     if (has_textures) {
         vec4 texel = material_texel(m, s.uv);
         color = color * texel.xyz;
         absent = has_cutouts && is_hole(m.pattern, m.inv_size, texel.w);
     }
-    if (has_cutouts)
-        absent = absent || (!front && (m.flags & LR_GPU_ONE_SIDED) != 0u &&
-                            (ids.y & LR_FLAG_SOLID) == 0u);
+    vec3 n = ex_dot(ray.direction, s.normal) < 0.0 ? s.normal : -s.normal;
 
     vec3 fog;
     vec3 weight = weight_after(ray, hit.t, fog);

@@ -71,8 +71,7 @@ static void pack_material(const lr_scene *scene, const lr_material *m, struct gp
         .inv_length2 = length2 > 0 ? (float)(1 / length2) : 0,
         .pattern_direction = lr_pack_vec3(direction),
         .flags = (m->fresnel ? LR_GPU_FRESNEL : 0) |
-                 (m->highlight == LR_HIGHLIGHT_PHONG ? LR_GPU_PHONG : 0) | (lit ? LR_GPU_LIT : 0) |
-                 (m->one_sided ? LR_GPU_ONE_SIDED : 0),
+                 (m->highlight == LR_HIGHLIGHT_PHONG ? LR_GPU_PHONG : 0) | (lit ? LR_GPU_LIT : 0),
         .ambient = lr_pack_vec3(ambient),
         .shininess = (float)m->shininess,
         .diffuse = lr_pack_vec3(m->diffuse),
@@ -97,7 +96,7 @@ static lr_status pack_materials(const lr_scene *scene, lr_packed_scene *packed, 
             return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's materials");
         uint32_t *use = packed->constants;
         bool image = m->color.kind == LR_PATTERN_IMAGE;
-        bool cut = m->one_sided || (image && m->alpha_cutoff > 0);
+        bool cut = image && m->alpha_cutoff > 0;
         use[LR_SPEC_TEXTURES] |= image;
         use[LR_SPEC_CUTOUTS] |= cut;
         use[LR_SPEC_PATTERNS] |= !image && m->color.kind != LR_PATTERN_NONE;
