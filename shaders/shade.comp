@@ -16,6 +16,7 @@
 #include "shadow.glsl"
 #include "shadow_queue.glsl"
 #include "surface.glsl"
+#include "texture.glsl"
 
 layout(local_size_x = LR_GROUP_SIZE) in;
 
@@ -117,6 +118,12 @@ void main()
     vec3 color = m.color0;
     if (has_patterns)
         color = pattern_color(m, s.object, s.position, s.normal);
+    bool absent = false;
+    if (has_textures) {
+        vec4 texel = material_texel(m, s.uv);
+        color = color * texel.xyz;
+        absent = has_cutouts && is_hole(m.pattern, m.inv_size, texel.w);
+    }
     vec3 n = ex_dot(ray.direction, s.normal) < 0.0 ? s.normal : -s.normal;
     vec3 lit_by = n;
     if (has_corners) {
@@ -129,14 +136,15 @@ void main()
     bool first_lights = wanted && hidden(work.first_lights) != 0u;
     bool lit = wanted && (m.flags & LR_GPU_LIT) != 0u;
     if (has_scatter) {
-        bool visible = scatter(ray, weight, s, n, lit_by, ids, m, first_lights);
+        bool visible = scatter(ray, weight, s, n, lit_by, ids, m, absent, first_lights);
         lit = lit && visible;
     }
     film_sum sum = film_zero();
     if (has_fog && first_lights)
         film_accumulate(sum, fog);
+    vec3 emission = vec3(m.emission_red, m.emission_green, m.emission_blue);
     if (lit && first_lights)
-        film_accumulate(sum, weight * (m.ambient * color));
+        film_accumulate(sum, weight * (m.ambient * color + emission));
     uint count = hidden(work.light_count);
     lit = lit && count != 0u;
     for (uint l = 0u;;) {

@@ -6,6 +6,7 @@
 #include "intersect.glsl"
 #include "mesh.glsl"
 #include "triangle.glsl"
+#include "uv.glsl"
 
 struct surface {
     vec3 position; // moved onto the surface where that is cheap
@@ -15,7 +16,7 @@ struct surface {
     vec3 shading;     // normal to be lit by, unit, on the same side as the geometric one
     vec3 lit_from;    // where shadow rays start, before the offset
     vec3 tint;        // of the mesh's corners, times the material's colour
-    vec2 uv;
+    vec2 uv; // texture coordinates, in scenes with textures
 };
 
 // On a smooth mesh light must fall as if the surface were curved: shadow rays start at the point where
@@ -74,6 +75,8 @@ surface surface_at(gpu_hit hit, vec3 o, vec3 d)
     float t = hit.t;
     vec3 position = o + d * t, normal = vec3(0.0, 1.0, 0.0);
     uint object = 0u;
+    vec2 uv = vec2(0.0);
+    bool planar = has_textures;
     vec3 a = abs(position);
     float reach = max(max(a.x, a.y), a.z);
     if (has_spheres && is_in(frame.spheres, primitive)) {
@@ -97,6 +100,9 @@ surface surface_at(gpu_hit hit, vec3 o, vec3 d)
         normal = f.normal;
         position = position + normal * (f.offset - ex_dot(normal, position));
         reach = max(reach, abs(f.offset));
+        if (has_textures)
+            uv = flat_uv(f, position);
+        planar = false;
     }
     bool ellipsoid = has_ellipsoids && is_in(frame.ellipsoids, primitive);
     bool box = has_boxes && is_in(frame.boxes, primitive);
@@ -110,10 +116,16 @@ surface surface_at(gpu_hit hit, vec3 o, vec3 d)
         if (has_cones)
             n = cone ? cone_surface_normal(s, p) : n;
         normal = solid_normal(s, n);
+        if (has_textures && has_boxes)
+            uv = box_uv(p, n);
+        planar = planar && !box;
         reach = max(reach, t);
     }
-    surface s = surface(position, reach * LR_OFFSET, normal, object, normal, position, vec3(1.0),
-                        vec2(0.0));
+    if (has_textures) {
+        vec2 projected = planar_uv(object, position);
+        uv = planar ? projected : uv;
+    }
+    surface s = surface(position, reach * LR_OFFSET, normal, object, normal, position, vec3(1.0), uv);
     if (has_instances && is_in(frame.triangles, primitive))
         s = mesh_surface(hit, o, d);
     return s;

@@ -12,13 +12,10 @@
 
 static lr_camera *add_camera(lr_reader *reader)
 {
-    lr_scene *scene = reader->scene;
-    if (!lr_array_reserve((void **)&scene->cameras, scene->camera_count, &reader->camera_capacity,
-                          sizeof *scene->cameras)) {
+    lr_camera *camera = lr_scene_add_camera(&reader->builder);
+    if (!camera)
         reader->report->no_memory = true;
-        return NULL;
-    }
-    return &scene->cameras[scene->camera_count++];
+    return camera;
 }
 
 static void read_camera(lr_reader *reader, const lr_node *node, const lr_node *name, lr_vec3 up)
@@ -206,7 +203,8 @@ static void read_text(lr_scene *scene, lr_report *report)
         return;
     lr_tree tree;
     lr_tree_read(&tree, report);
-    lr_reader reader = {.report = report, .scene = scene, .default_material = UINT32_MAX};
+    lr_reader reader = {
+        .report = report, .scene = scene, .builder.scene = scene, .default_material = UINT32_MAX};
     reader.locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     if (!reader.locale)
         report->no_memory = true;
