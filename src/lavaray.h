@@ -50,6 +50,24 @@ typedef struct lr_scene_info {
 
 void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info);
 
+/* The languages that scenes are written in: ours, and those of POV-Ray 3.7 and Tachyon. */
+typedef enum lr_scene_format {
+    LR_SCENE_YAML,
+    LR_SCENE_POVRAY,
+    LR_SCENE_TACHYON,
+} lr_scene_format;
+
+/* The language that a path's ending names (.yaml .yml, .pov, .dat .tac), false when it names none.
+ */
+bool lr_scene_format_from_path(const char *path, lr_scene_format *format);
+
+/* Writes the scene to path. Meshes of LR_SCENE_YAML go into files beside it: PATH without its
+ * ending and with -1.ply, -2.ply, ... behind; they replace files of these names only if path is
+ * replaced as well. What the language cannot say is told in *notes, one line each, which the caller
+ * frees; NULL: nothing. Files are replaced only after their successors are complete. */
+lr_status lr_scene_write(const lr_scene *scene, const char *path, lr_scene_format format,
+                         char **notes, lr_error *error);
+
 /* The JSON Schema of the scene language; the caller frees it. NULL when memory is out. */
 char *lr_scene_schema(void);
 
