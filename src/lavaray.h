@@ -31,9 +31,10 @@ typedef struct lr_error {
 
 typedef struct lr_scene lr_scene;
 
-/* Reads and checks the scene file at path ("-" is standard input). On LR_ERROR_SCENE, *report is
- * the text of all errors, `file:line:col: message` each with its source line and a caret; the
- * caller frees it. Other failures are described in error and leave *report NULL. */
+/* Reads and checks the scene file at path ("-" is standard input): the scene language, or NFF in a
+ * file whose name ends in .nff. On LR_ERROR_SCENE, *report is the text of all errors,
+ * `file:line:col: message` each with its source line and a caret; the caller frees it. Other
+ * failures are described in error and leave *report NULL. */
 lr_status lr_scene_load(const char *path, lr_scene **scene, char **report, lr_error *error);
 
 /* The same from text in memory; name stands in the messages for the file. */

@@ -2,7 +2,15 @@
 #ifndef LR_SCENE_BUILD_H
 #define LR_SCENE_BUILD_H
 
+#include "scene/report.h"
 #include "scene/scene.h"
+
+/* Makes a scene of a text: `read` fills it in and reports what is wrong, to which the text, its
+ * name and its language are known. Returns as lr_scene_parse does. */
+lr_status lr_scene_from_text(const char *text, size_t length, const char *name,
+                             const lr_language *language,
+                             void (*read)(lr_scene *scene, lr_report *report), lr_scene **scene,
+                             char **report, lr_error *error);
 
 /* A scene that grows, with the room that its arrays have. */
 typedef struct lr_scene_builder {

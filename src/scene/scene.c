@@ -4,6 +4,8 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/memory.h"
+#include "scene/build.h"
+#include "scene/nff.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -216,25 +218,27 @@ static void read_text(lr_scene *scene, lr_report *report)
     lr_tree_free(&tree);
 }
 
-lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_scene **scene,
-                         char **report, lr_error *error)
+lr_status lr_scene_from_text(const char *text, size_t length, const char *name,
+                             const lr_language *language,
+                             void (*read)(lr_scene *scene, lr_report *report), lr_scene **scene,
+                             char **report, lr_error *error)
 {
     *scene = NULL;
     *report = NULL;
     lr_status status = LR_OK;
-    lr_scene *read = lr_alloc(1, sizeof *read);
+    lr_scene *made = lr_alloc(1, sizeof *made);
     lr_report *problems = lr_alloc(1, sizeof *problems);
-    if (!read || !problems)
+    if (!made || !problems)
         goto no_memory;
-    read->source = lr_string_copy(name, strlen(name));
-    if (!read->source)
+    made->source = lr_string_copy(name, strlen(name));
+    if (!made->source)
         goto no_memory;
-    lr_hash_bytes(text, length, read->sha256);
-    problems->language = &scene_language;
+    lr_hash_bytes(text, length, made->sha256);
+    problems->language = language;
     problems->name = name;
     problems->text = text;
     problems->length = length;
-    read_text(read, problems);
+    read(made, problems);
     if (problems->no_memory)
         goto no_memory;
     if (problems->count > 0) {
@@ -245,8 +249,8 @@ lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_s
         status = lr_fail(error, LR_ERROR_SCENE, "%s: %llu error%s in the scene", name,
                          (unsigned long long)count, count == 1 ? "" : "s");
     } else {
-        *scene = read;
-        read = NULL;
+        *scene = made;
+        made = NULL;
     }
     goto done;
 no_memory:
@@ -255,8 +259,14 @@ done:
     if (problems)
         lr_report_free(problems);
     free(problems);
-    lr_scene_destroy(read);
+    lr_scene_destroy(made);
     return status;
+}
+
+lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_scene **scene,
+                         char **report, lr_error *error)
+{
+    return lr_scene_from_text(text, length, name, &scene_language, read_text, scene, report, error);
 }
 
 lr_status lr_scene_load(const char *path, lr_scene **scene, char **report, lr_error *error)
@@ -265,11 +275,13 @@ lr_status lr_scene_load(const char *path, lr_scene **scene, char **report, lr_er
     size_t length;
     *scene = NULL;
     *report = NULL;
-    lr_status status = lr_file_read(path, LR_TEXT_MAX, &text, &length, error);
+    bool nff = lr_nff_is_path(path);
+    lr_status status =
+        lr_file_read(path, nff ? LR_NFF_TEXT_MAX : LR_TEXT_MAX, &text, &length, error);
     if (status != LR_OK)
         return status;
     const char *name = strcmp(path, "-") == 0 ? "<stdin>" : path;
-    status = lr_scene_parse(text, length, name, scene, report, error);
+    status = (nff ? lr_nff_read : lr_scene_parse)(text, length, name, scene, report, error);
     free(text);
     return status;
 }

@@ -99,6 +99,7 @@ typedef struct lr_object {
     uint32_t line;
     bool shadow;           /* whether it casts shadows */
     bool open;             /* cylinder, cone: without end caps */
+    bool inward;           /* sphere, open cylinder and cone: only its inside is there */
     bool transformed;      /* to_world is not the identity */
     lr_transform to_world; /* of the object and of the groups around it; invertible */
     union {
