@@ -3,6 +3,7 @@
 #ifndef LR_SCENE_READ_H
 #define LR_SCENE_READ_H
 
+#include "scene/build.h"
 #include "scene/keys.h"
 #include "scene/names.h"
 #include "scene/node.h"
@@ -12,9 +13,10 @@
 typedef struct lr_reader {
     lr_report *report;
     lr_scene *scene;
-    locale_t locale;    /* "C", whatever the program chose */
-    lr_names materials; /* names to indices of scene->materials */
-    uint32_t material_capacity, object_capacity, light_capacity, camera_capacity;
+    locale_t locale;          /* "C", whatever the program chose */
+    lr_names materials;       /* names to indices of scene->materials */
+    lr_scene_builder builder; /* of the same scene */
+    lr_load_options options;
     uint32_t default_material; /* UINT32_MAX until an object needs it */
     uint32_t nesting;          /* of groups */
     bool full;                 /* too many objects or materials: reported, reading has stopped */

@@ -107,13 +107,11 @@ static lr_material *add_material(lr_reader *reader, size_t offset, uint32_t *ind
         reader->full = true;
         return NULL;
     }
-    if (!lr_array_reserve((void **)&scene->materials, scene->material_count,
-                          &reader->material_capacity, sizeof *scene->materials)) {
+    lr_material *material = lr_scene_add_material(&reader->builder);
+    if (!material)
         reader->report->no_memory = true;
-        return NULL;
-    }
-    *index = scene->material_count++;
-    return &scene->materials[*index];
+    *index = scene->material_count - 1;
+    return material;
 }
 
 void lr_read_materials(lr_reader *reader, const lr_node *node)

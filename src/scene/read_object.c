@@ -2,8 +2,6 @@
  * groups around it give it. */
 #include "scene/read.h"
 
-#include "base/memory.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -77,20 +75,19 @@ static void read_group(lr_reader *reader, const lr_node *key, const lr_node *val
 
 static void add_object(lr_reader *reader, const lr_object *object, const lr_node *at)
 {
-    lr_scene *scene = reader->scene;
-    if (scene->object_count == LR_OBJECTS_MAX) {
+    if (reader->scene->object_count == LR_OBJECTS_MAX) {
         lr_report_add(reader->report, at->offset, "more than %d objects, groups counted out",
                       LR_OBJECTS_MAX);
         reader->full = true;
         return;
     }
-    if (!lr_array_reserve((void **)&scene->objects, scene->object_count, &reader->object_capacity,
-                          sizeof *scene->objects)) {
+    lr_object *added = lr_scene_add_object(&reader->builder);
+    if (!added) {
         reader->report->no_memory = true;
         reader->full = true;
         return;
     }
-    scene->objects[scene->object_count++] = *object;
+    *added = *object;
 }
 
 static void read_object(lr_reader *reader, const lr_record *record, const lr_node *key,
