@@ -1,5 +1,6 @@
-/* JPEG by stb_image. The library reads on behind the end of a file as if zeros followed, so the
- * walk over the markers here comes first. */
+/* JPEG by stb_image. The library reads on behind the end of a file as if zeros followed, and
+ * version 2.27 writes beyond its tables of codes when a file gives too many of them. So a walk over
+ * the markers, which finds the same ones as the library's, comes first. */
 #include "image/read_internal.h"
 
 #include <limits.h>
@@ -9,10 +10,17 @@
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_JPEG
 #define STBI_NO_STDIO
+/* Version 2.27 uses tables that a file never gave. Of zeros they are harmless, and the same each
+ * time.
+ */
+#define STBI_MALLOC(size) calloc(1, size)
+#define STBI_REALLOC(memory, size) realloc(memory, size)
+#define STBI_FREE(memory) free(memory)
 #define STBI_NO_SIMD /* one set of arithmetic on all processors */
 #include <stb/stb_image.h>
 
 enum {
+    MARKER_CODES = 0xC4,
     MARKER_END = 0xD9,
     MARKER_SCAN = 0xDA,
     /* A few bytes can ask for one more pass over all pixels; encoders write about ten. */
@@ -23,6 +31,24 @@ enum {
 static bool is_part_of_scan(unsigned char code)
 {
     return code == 0x00 || code == 0x01 || code == 0xFF || (code >= 0xD0 && code <= 0xD8);
+}
+
+/* A segment of code tables: for each its number, how many codes it has of 1 to 16 bits, and a byte
+ * for each code. */
+static lr_status check_codes(const image_file *file, size_t at, size_t end, lr_error *error)
+{
+    while (end - at >= 17) {
+        size_t codes = 0;
+        for (size_t i = 1; i <= 16; i++)
+            codes += file->bytes[at + i];
+        if (codes > 256)
+            return image_corrupt(file, error, "the table at %zu has %zu codes", at, codes);
+        if (codes > end - at - 17)
+            break;
+        at += 17 + codes;
+    }
+    return at == end ? LR_OK
+                     : image_corrupt(file, error, "the segment that ends at %zu is cut short", end);
 }
 
 static lr_status check_markers(const image_file *file, lr_error *error)
@@ -46,6 +72,11 @@ static lr_status check_markers(const image_file *file, lr_error *error)
         if (length > file->size - at - 2)
             return image_truncated(file, error, "the segment at %zu needs %zu", at,
                                    at + 2 + length);
+        lr_status status = LR_OK;
+        if (bytes[at + 1] == MARKER_CODES)
+            status = check_codes(file, at + 4, at + 2 + length, error);
+        if (status != LR_OK)
+            return status;
         at += 2 + length;
     }
     return image_truncated(file, error, "before the marker of its end");

@@ -79,7 +79,9 @@ typedef struct lr_light_draft {
 typedef struct lr_pattern_draft {
     lr_pattern pattern;
     lr_vec3 to;
-    uint32_t space; /* 0 world, 1 object */
+    uint32_t space;    /* 0 world, 1 object */
+    const char *image; /* as written */
+    uint32_t wrap;     /* lr_wrap */
 } lr_pattern_draft;
 
 typedef struct lr_rotation_draft {

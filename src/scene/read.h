@@ -13,10 +13,10 @@
 typedef struct lr_reader {
     lr_report *report;
     lr_scene *scene;
-    locale_t locale;          /* "C", whatever the program chose */
-    lr_names materials;       /* names to indices of scene->materials */
-    lr_scene_builder builder; /* of the same scene */
-    lr_load_options options;
+    lr_scene_builder builder;  /* of that scene */
+    lr_load_options options;   /* for the files that the text names */
+    locale_t locale;           /* "C", whatever the program chose */
+    lr_names materials;        /* names to indices of scene->materials */
     uint32_t default_material; /* UINT32_MAX until an object needs it */
     uint32_t nesting;          /* of groups */
     bool full;                 /* too many objects or materials: reported, reading has stopped */

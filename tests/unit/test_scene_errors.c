@@ -43,9 +43,9 @@ static void test_keys(void **state)
          "3:22: unknown material \"glas\", expected a name from materials; did you mean "
          "\"glass\"?"},
         {SPHERE("material: x"), "3:22: unknown material \"x\", expected a name from materials\n"},
-        {MATERIAL("color: {cheker: [0, 1]}"),
-         "1:25: color has no pattern, expected checker, stripes, gradient or rings; did you mean "
-         "\"checker\"?"},
+        {MATERIAL("color: {cheker: [0, 1]}"), "1:25: color has no pattern, expected checker, "
+                                              "stripes, gradient, rings or image; did you mean "
+                                              "\"checker\"?"},
         {MATERIAL("color: {checker: [0, 1], direction: [1, 0, 0]}"),
          "1:42: unknown key \"direction\" in checker"},
         {SPHERE("\"a\\tb\": 1"), "3:12: unknown key \"a\\x09b\" in sphere"},
