@@ -1,7 +1,6 @@
 #include "scene/import.h"
 
 #include <assimp/cimport.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -119,12 +118,11 @@ static void count_present(lr_import *import)
 static void start(lr_import *import, lr_scene_builder *builder, const char *base_file,
                   const char *name, const lr_load_options *options, lr_error *error)
 {
-    *import =
-        (lr_import){.builder = builder,
-                    .base_file = base_file,
-                    .name = name,
-                    .error = error,
-                    .world = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}}};
+    *import = (lr_import){.builder = builder,
+                          .base_file = base_file,
+                          .name = name,
+                          .error = error,
+                          .world = lr_bounds_empty()};
     if (options)
         import->options = *options;
     if (import->options.max_triangles == 0)

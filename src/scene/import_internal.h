@@ -7,6 +7,7 @@
 #include <jansson.h>
 
 #include "base/status.h"
+#include "scene/bounds.h"
 #include "scene/build.h"
 
 #define LR_IMPORT_TRIANGLES_DEFAULT 100000000u
@@ -24,11 +25,6 @@ typedef enum lr_import_kind {
     LR_IMPORT_PLY,
     LR_IMPORT_STL,
 } lr_import_kind;
-
-/* An axis-aligned box; empty when min.x > max.x. */
-typedef struct lr_bounds {
-    lr_vec3 min, max;
-} lr_bounds;
 
 typedef struct lr_import {
     lr_scene_builder *builder;
@@ -117,8 +113,6 @@ lr_status lr_import_mesh(lr_import *import, uint32_t index, uint32_t *mesh);
 
 /* import_node.c: the objects. */
 lr_status lr_import_nodes(lr_import *import);
-/* Whether objects can have this transform: finite, with an inverse, neither extreme. */
-bool lr_import_transform_usable(const lr_transform *t);
 
 /* closed.c: whether the triangles enclose a space: with vertices at equal positions joined, each
  * edge is met by exactly two triangles, once in each direction. False when memory is out. */

@@ -189,7 +189,7 @@ static lr_status visit_node(lr_import *import, const visit *at, visits *stack)
     lr_transform own = node_transform(node);
     lr_transform to_world = lr_transform_multiply(at->around, own);
     lr_status status = LR_OK;
-    if (!lr_import_transform_usable(&to_world)) /* noted with the objects */
+    if (!lr_transform_usable(&to_world)) /* noted with the objects */
         return LR_OK;
     if (camera)
         status = add_camera(import, node, camera, &to_world);

@@ -284,20 +284,6 @@ static lr_status fill_mesh(builder *b, lr_mesh *mesh)
     return LR_OK;
 }
 
-static lr_bounds mesh_bounds(const lr_mesh *mesh)
-{
-    lr_bounds bounds = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-        const float *p = &mesh->positions[3 * (size_t)i];
-        lr_vec3 v = {(double)p[0], (double)p[1], (double)p[2]};
-        bounds.min =
-            (lr_vec3){fmin(bounds.min.x, v.x), fmin(bounds.min.y, v.y), fmin(bounds.min.z, v.z)};
-        bounds.max =
-            (lr_vec3){fmax(bounds.max.x, v.x), fmax(bounds.max.y, v.y), fmax(bounds.max.z, v.z)};
-    }
-    return bounds;
-}
-
 static lr_status note_count(builder *b, uint32_t count, const char *what)
 {
     if (count == 0)
@@ -372,7 +358,7 @@ static lr_status convert(builder *b, uint32_t index, uint32_t *mesh)
     *mesh = import->builder->scene->mesh_count - 1;
     status = fill_mesh(b, added);
     if (!status)
-        import->bounds[index] = mesh_bounds(added);
+        import->bounds[index] = lr_mesh_bounds(added);
     return status;
 }
 

@@ -17,22 +17,6 @@ typedef struct visits {
     uint32_t count, capacity;
 } visits;
 
-bool lr_import_transform_usable(const lr_transform *t)
-{
-    lr_transform inverse;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 4; j++)
-            if (!(fabs(t->m[i][j]) <= LR_COORDINATE_MAX))
-                return false;
-    if (!lr_transform_inverse(t, &inverse))
-        return false;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 4; j++)
-            if (!(fabs(inverse.m[i][j]) <= 1e36))
-                return false;
-    return true;
-}
-
 static lr_transform transform_of(const struct aiMatrix4x4 *m)
 {
     return (lr_transform){{{(double)m->a1, (double)m->a2, (double)m->a3, (double)m->a4},
@@ -47,33 +31,6 @@ static bool is_identity(const lr_transform *t)
             if (t->m[i][j] != (i == j))
                 return false;
     return true;
-}
-
-/* The box around the corners of `local` in the world; false when it reaches too far. */
-static bool place_bounds(const lr_bounds *local, const lr_transform *to_world, lr_bounds *world)
-{
-    bool usable = true;
-    *world = (lr_bounds){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (int i = 0; i < 8; i++) {
-        lr_vec3 p = {i & 1 ? local->max.x : local->min.x, i & 2 ? local->max.y : local->min.y,
-                     i & 4 ? local->max.z : local->min.z};
-        p = lr_transform_point(to_world, p);
-        usable = usable && fabs(p.x) <= LR_COORDINATE_MAX && fabs(p.y) <= LR_COORDINATE_MAX &&
-                 fabs(p.z) <= LR_COORDINATE_MAX;
-        world->min =
-            (lr_vec3){fmin(world->min.x, p.x), fmin(world->min.y, p.y), fmin(world->min.z, p.z)};
-        world->max =
-            (lr_vec3){fmax(world->max.x, p.x), fmax(world->max.y, p.y), fmax(world->max.z, p.z)};
-    }
-    return usable;
-}
-
-static void extend(lr_bounds *bounds, const lr_bounds *by)
-{
-    bounds->min = (lr_vec3){fmin(bounds->min.x, by->min.x), fmin(bounds->min.y, by->min.y),
-                            fmin(bounds->min.z, by->min.z)};
-    bounds->max = (lr_vec3){fmax(bounds->max.x, by->max.x), fmax(bounds->max.y, by->max.y),
-                            fmax(bounds->max.z, by->max.z)};
 }
 
 static lr_status add_object(lr_import *import, const struct aiNode *node, uint32_t index,
@@ -92,8 +49,8 @@ static lr_status add_object(lr_import *import, const struct aiNode *node, uint32
     }
     if (import->meshes[index] == LR_IMPORT_NOTHING)
         return LR_OK;
-    lr_bounds world;
-    if (!place_bounds(&import->bounds[index], to_world, &world))
+    lr_bounds world = lr_bounds_transform(&import->bounds[index], to_world);
+    if (!lr_bounds_usable(&world))
         return lr_import_note(import, "node \"%s\": left out, it reaches beyond 1e12 metres", name);
     uint32_t material;
     lr_status status = lr_import_material(import, from->mMeshes[index]->mMaterialIndex, &material);
@@ -112,7 +69,7 @@ static lr_status add_object(lr_import *import, const struct aiNode *node, uint32
                           .transformed = !is_identity(to_world),
                           .to_world = *to_world,
                           .mesh = import->meshes[index]};
-    extend(&import->world, &world);
+    lr_bounds_add(&import->world, &world);
     return LR_OK;
 }
 
@@ -125,8 +82,7 @@ static lr_status visit_node(lr_import *import, const visit *at, visits *stack)
     lr_transform own = transform_of(&node->mTransformation);
     const struct aiMatrix4x4 *m = &node->mTransformation;
     lr_transform to_world = lr_transform_multiply(at->to_world, own);
-    if (!lr_import_transform_usable(&to_world) || m->d1 != 0 || m->d2 != 0 || m->d3 != 0 ||
-        m->d4 != 1)
+    if (!lr_transform_usable(&to_world) || m->d1 != 0 || m->d2 != 0 || m->d3 != 0 || m->d4 != 1)
         return lr_import_note(import,
                               "node \"%s\": left out with all below it, its transform flattens it "
                               "or is extreme",

@@ -329,6 +329,16 @@ static const lr_field triangle_fields[] = {
     POINT("c", triangle.c, "The last."),
     PLACEMENT,
 };
+static const lr_field mesh_fields[] = {
+    {"file", LR_FIELD_TEXT, LR_REQUIRED | LR_DERIVED, MEMBER(lr_object_draft, file),
+     .derived = "the path of a model, such as spot.obj",
+     .doc = "A glTF, GLB, OBJ, PLY or STL file, as seen from the scene's folder."},
+    {"material", LR_FIELD_MATERIAL, LR_DERIVED, .derived = "the group's, else the file's own",
+     .doc = "For all that is in the file: the name of one of `materials`, or a material written "
+            "here."},
+    {"shadow", LR_FIELD_BOOLEAN, 0, DEFAULT(1), OBJECT(shadow), .doc = "Whether it casts shadows."},
+    TRANSFORM,
+};
 const lr_record lr_object_records[] = {
     RECORD("sphere", "A ball.", sphere_fields, LR_SPHERE),
     RECORD("plane", "An endless plane.", plane_fields, LR_PLANE),
@@ -338,6 +348,7 @@ const lr_record lr_object_records[] = {
     RECORD("cylinder", "A round bar between two points.", cylinder_fields, LR_CYLINDER),
     RECORD("cone", "A cone, or a cut-off one with `top_radius`.", cone_fields, LR_CONE),
     RECORD("triangle", "A flat triangle.", triangle_fields, LR_TRIANGLE),
+    RECORD("mesh", "The model in a file of another program.", mesh_fields, LR_MESH),
 };
 const uint32_t lr_object_record_count = COUNT(lr_object_records);
 

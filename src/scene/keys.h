@@ -69,6 +69,7 @@ typedef struct lr_object_draft {
     lr_object object;
     lr_vec3 translate, scale;
     lr_transform rotate;
+    const char *file; /* mesh */
 } lr_object_draft;
 
 typedef struct lr_light_draft {

@@ -214,6 +214,7 @@ static void read_text(lr_scene *scene, lr_report *report, const lr_load_options 
         lr_read_scene(&reader, tree.root);
     if (reader.locale)
         freelocale(reader.locale);
+    lr_mesh_files_free(&reader.files);
     lr_names_free(&reader.materials);
     lr_tree_free(&tree);
 }
@@ -242,7 +243,9 @@ lr_status lr_scene_from_text(const char *text, size_t length, const char *name,
     read(made, problems, options);
     if (problems->no_memory)
         goto no_memory;
-    if (problems->count > 0) {
+    if (problems->interrupted) {
+        status = lr_fail(error, LR_ERROR_INTERRUPTED, "%s: interrupted", name);
+    } else if (problems->count > 0) {
         *report = lr_report_text(problems);
         if (!*report)
             goto no_memory;

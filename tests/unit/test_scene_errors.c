@@ -36,7 +36,7 @@ static void test_keys(void **state)
          "3:1: duplicate key \"objects\", first given on line 1"},
         {ONE "- sphre: {}\n", "3:3: unknown object \"sphre\"; did you mean \"sphere\"?"},
         {ONE "- torus: {}\n", "3:3: unknown object \"torus\", expected one of sphere, plane, box, "
-                              "disk, rectangle, cylinder, cone, triangle, group"},
+                              "disk, rectangle, cylinder, cone, triangle, mesh, group"},
         {"lights: [{pont: {}}]\n" ONE "- sphere: {}\n",
          "1:11: unknown light \"pont\"; did you mean \"point\"?"},
         {SPHERE("material: glas") "materials: {glass: {}}\n",
@@ -277,7 +277,7 @@ static void test_excerpts(void **state)
     assert_true(
         reports("{camera: {},\n\t\"objects\": [\t{\"x\": 1}]}\n",
                 "s.yaml:2:16: unknown object \"x\", expected one of sphere, plane, box, disk, "
-                "rectangle, cylinder, cone, triangle, group\n"
+                "rectangle, cylinder, cone, triangle, mesh, group\n"
                 "    2 |     \"objects\": [    {\"x\": 1}]}\n"
                 "      |                      ^\n"));
     assert_true(reports(SPHERE("\"\xC3\xA9\xC3\xA9\": 1, radius: -1"),
