@@ -20,6 +20,8 @@ layout(constant_id = LR_SPEC_TRANSPARENT) const bool has_transparent = true;
 layout(constant_id = LR_SPEC_TRANSPARENT_PLANES) const bool has_transparent_planes = true;
 layout(constant_id = LR_SPEC_SPECULAR) const bool has_specular = true;
 layout(constant_id = LR_SPEC_PATTERNS) const bool has_patterns = true;
+layout(constant_id = LR_SPEC_TEXTURES) const bool has_textures = true;
+layout(constant_id = LR_SPEC_CUTOUTS) const bool has_cutouts = true;
 layout(constant_id = LR_SPEC_SPOTS) const bool has_spots = true;
 layout(constant_id = LR_SPEC_SHUFFLE) const bool has_shuffle = true;
 layout(constant_id = LR_SPEC_TEXEL_QUEUES) const bool texel_queues = true;

@@ -69,6 +69,11 @@ vec3 ex_mix(vec3 a, vec3 b, float t)
     return a * (1.0 - t) + b * t;
 }
 
+vec4 ex_mix(vec4 a, vec4 b, float t)
+{
+    return a * (1.0 - t) + b * t;
+}
+
 // log2(x) for normal x > 0, relative error below 4e-7, also near 1. x = m 2^e with m in
 // [sqrt(1/2), sqrt(2)), s = (m - 1) / (m + 1), log2(m) = 2 / ln 2 (s + s^3/3 + s^5/5 + ...).
 float ex_log2(float x)

@@ -47,7 +47,7 @@ typedef struct vec4 {
 #define LR_SPEC_MEDIA 7      /* some object encloses a medium that rays enter */
 #define LR_SPEC_ABSORPTION 8 /* some medium absorbs */
 #define LR_SPEC_FOG 9
-#define LR_SPEC_SCATTER 10 /* some material reflects or transmits */
+#define LR_SPEC_SCATTER 10 /* some material reflects, transmits or is not everywhere */
 #define LR_SPEC_FRESNEL 11
 #define LR_SPEC_TRANSPARENT 12 /* some shadow caster transmits light */
 #define LR_SPEC_SPECULAR 13
@@ -56,7 +56,9 @@ typedef struct vec4 {
 #define LR_SPEC_SHUFFLE 16            /* share loads within a subgroup */
 #define LR_SPEC_TEXEL_QUEUES 17       /* as LR_SPEC_TEXEL_LOADS, for the queues */
 #define LR_SPEC_TRANSPARENT_PLANES 18 /* ... that is a plane */
-#define LR_SPEC_COUNT 19
+#define LR_SPEC_TEXTURES 19
+#define LR_SPEC_CUTOUTS 20 /* some surface is not there everywhere or from both sides */
+#define LR_SPEC_COUNT 21
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -183,17 +185,23 @@ LR_ROWS(gpu_medium, 1)
 #define LR_GPU_PATTERN_STRIPES 2u
 #define LR_GPU_PATTERN_GRADIENT 3u
 #define LR_GPU_PATTERN_RINGS 4u
+#define LR_GPU_PATTERN_IMAGE 5u
+#define LR_GPU_PATTERN_KIND 7u
 #define LR_GPU_OBJECT_SPACE 8u /* added to the pattern's kind */
+#define LR_GPU_TEXTURE_SHIFT 4 /* image: above these bits is the row of its gpu_texture */
 
 #define LR_GPU_FRESNEL 1u
 #define LR_GPU_PHONG 2u
-#define LR_GPU_LIT 4u /* has ambient, diffuse or specular light to show */
+#define LR_GPU_LIT 4u       /* has ambient, diffuse, specular or emitted light to show */
+#define LR_GPU_ONE_SIDED 8u /* not there from behind, unless the object is solid */
+
+#define LR_MATERIAL_ROWS 9u
 
 struct gpu_material {
     vec3 color0;
     uint pattern;
     vec3 color1;
-    float inv_size;
+    float inv_size; /* image: alpha below which there is no surface */
     vec3 pattern_origin;
     float inv_length2;      /* gradient: 1 / |direction|^2 */
     vec3 pattern_direction; /* unit but for the gradient */
@@ -203,13 +211,28 @@ struct gpu_material {
     vec3 diffuse;
     float ior;
     vec3 specular;
-    uint unused0;
+    float emission_red;
     vec3 reflect;
-    uint unused1;
+    float emission_green;
     vec3 transmit;
-    uint unused2;
+    float emission_blue;
 };
 LR_ROWS(gpu_material, 9)
+
+#define LR_GPU_WRAP_REPEAT 0u
+#define LR_GPU_WRAP_CLAMP 1u
+#define LR_GPU_WRAP_MIRROR 2u
+#define LR_GPU_TEXTURE_FLOATS 16u
+
+/* The records of the textures are the buffer's first rows. */
+struct gpu_texture {
+    uint texels; /* row of the first: four in a row, a byte for red, green, blue and alpha from
+                    the lowest bits up; or floats, one in a row, with alpha 1 */
+    uint size;   /* width, height << 16 */
+    uint curve;  /* row b from here: the linear value of byte b, and b / 255 */
+    uint flags;  /* wrap of u, wrap of v << 2, LR_GPU_TEXTURE_FLOATS */
+};
+LR_ROWS(gpu_texture, 1)
 
 #define LR_GPU_LIGHT_DIRECTIONAL 1u
 #define LR_GPU_LIGHT_SPOT 2u

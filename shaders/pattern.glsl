@@ -1,4 +1,4 @@
-// Colours by position.
+// Colours by position. Pictures: texture.glsl.
 #ifndef PATTERN_GLSL
 #define PATTERN_GLSL
 
@@ -17,7 +17,7 @@ int cell_index(float c, float n)
 vec3 pattern_color(gpu_material m, uint object, vec3 position, vec3 normal)
 {
     vec3 p = position, n = normal;
-    uint kind = m.pattern & 7u;
+    uint kind = m.pattern & LR_GPU_PATTERN_KIND;
     if ((m.pattern & LR_GPU_OBJECT_SPACE) != 0u) {
         vec4 row0, row1, row2;
         load_object_space(object, row0, row1, row2);
@@ -37,7 +37,7 @@ vec3 pattern_color(gpu_material m, uint object, vec3 position, vec3 normal)
                                               : (kind == LR_GPU_PATTERN_STRIPES ? stripe : ring);
     float share = float(cell & 1);
     share = kind == LR_GPU_PATTERN_GRADIENT ? clamp(along * m.inv_length2, 0.0, 1.0) : share;
-    share = kind == LR_GPU_PATTERN_NONE ? 0.0 : share;
+    share = kind == LR_GPU_PATTERN_NONE || kind == LR_GPU_PATTERN_IMAGE ? 0.0 : share;
     return ex_mix(m.color0, m.color1, share);
 }
 

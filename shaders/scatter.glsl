@@ -47,17 +47,18 @@ void emit(uint slot, child c, uint pixel, surface s, vec3 n)
 }
 
 // Emits the children of `ray`, which met `s` with `weight`; n is the normal against the ray. Returns
-// false when the surface is hidden within another medium, and so nothing to be lit.
-bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, uvec3 ids, gpu_material m, bool wanted)
+// false when the surface is absent there or hidden within another medium, and so nothing to be lit.
+bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, uvec3 ids, gpu_material m, bool absent,
+             bool wanted)
 {
     bool entering = ex_dot(ray.direction, s.normal) < 0.0;
     float c1 = min(max(-ex_dot(ray.direction, n), 0.0), 1.0);
     uvec4 media = ray_media(ray);
     uvec4 beyond = media;
-    bool solid = has_media && (ids.y & LR_FLAG_SOLID) != 0u && (ids.y & LR_FLAG_TRANSPARENT) != 0u;
+    bool solid = has_media && !absent && (ids.y & LR_FLAG_SOLID) != 0u && (ids.y & LR_FLAG_TRANSPARENT) != 0u;
     uint depth = ray.state & LR_STATE_DEPTH;
 
-    bool hidden = false;
+    bool hidden = absent;
     float ior1 = 1.0, ior2 = m.ior, gamma = 1.0;
     if (has_media) {
         bool placed = true;
@@ -69,7 +70,7 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, uvec3 ids, gpu_materia
         if (wanted && !placed)
             atomicAdd(counters.dropped_nesting, 1u);
         uint after = media_top(beyond);
-        hidden = solid && before == after;
+        hidden = hidden || (solid && before == after);
         ior1 = load_medium(before).ior;
         if (solid) {
             ior2 = load_medium(after).ior;
@@ -104,8 +105,8 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, uvec3 ids, gpu_materia
     bool emit_mirrored = wanted && !hidden && admit(mirrored, depth);
     bool emit_through = wanted && !hidden && !total && admit(through, depth);
     if (wanted && hidden) {
-        // The surface lies inside a medium that fills the space on both sides: as if it were not
-        // there. The ray goes on as the same ray.
+        // The surface lies inside a medium that fills the space on both sides, or has a hole: as if
+        // it were not there. The ray goes on as the same ray.
         uint kind = ray_kind(ray);
         uint on_kind = kind == LR_KIND_PRIMARY ? LR_KIND_REFRACTED : kind;
         through = child(weight, ray.direction, -1.0, beyond,

@@ -84,14 +84,20 @@ gpu_medium load_medium(uint rank)
 
 gpu_material load_material(uint index)
 {
-    uint at = frame.materials + 9u * index;
+    uint at = frame.materials + LR_MATERIAL_ROWS * index;
     vec4 r0 = scene_row_float(at), r1 = scene_row_float(at + 1u), r2 = scene_row_float(at + 2u);
     vec4 r3 = scene_row_float(at + 3u), r4 = scene_row_float(at + 4u);
     vec4 r5 = scene_row_float(at + 5u);
-    uvec4 r6 = scene_row(at + 6u), r7 = scene_row(at + 7u), r8 = scene_row(at + 8u);
+    vec4 r6 = scene_row_float(at + 6u), r7 = scene_row_float(at + 7u), r8 = scene_row_float(at + 8u);
     return gpu_material(r0.xyz, floatBitsToUint(r0.w), r1.xyz, r1.w, r2.xyz, r2.w, r3.xyz,
-                        floatBitsToUint(r3.w), r4.xyz, r4.w, r5.xyz, r5.w, uintBitsToFloat(r6.xyz),
-                        r6.w, uintBitsToFloat(r7.xyz), r7.w, uintBitsToFloat(r8.xyz), r8.w);
+                        floatBitsToUint(r3.w), r4.xyz, r4.w, r5.xyz, r5.w, r6.xyz,
+                        r6.w, r7.xyz, r7.w, r8.xyz, r8.w);
+}
+
+gpu_texture load_texture(uint row)
+{
+    uvec4 a = scene_row(row);
+    return gpu_texture(a.x, a.y, a.z, a.w);
 }
 
 gpu_light load_light(uint index)

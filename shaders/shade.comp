@@ -15,6 +15,7 @@
 #include "scatter.glsl"
 #include "shadow.glsl"
 #include "surface.glsl"
+#include "texture.glsl"
 
 layout(local_size_x = LR_GROUP_SIZE) in;
 
@@ -91,21 +92,31 @@ void main()
     vec3 color = m.color0;
     if (has_patterns)
         color = pattern_color(m, s.object, s.position, s.normal);
-    vec3 n = ex_dot(ray.direction, s.normal) < 0.0 ? s.normal : -s.normal;
+    bool front = ex_dot(ray.direction, s.normal) < 0.0, absent = false;
+    vec3 n = front ? s.normal : -s.normal;
+    if (has_textures) {
+        vec4 texel = material_texel(m, s.uv);
+        color = color * texel.xyz;
+        absent = has_cutouts && is_hole(m.pattern, m.inv_size, texel.w);
+    }
+    if (has_cutouts)
+        absent = absent || (!front && (m.flags & LR_GPU_ONE_SIDED) != 0u &&
+                            (ids.y & LR_FLAG_SOLID) == 0u);
 
     vec3 fog;
     vec3 weight = weight_after(ray, hit.t, fog);
     bool first_lights = wanted && hidden(work.first_lights) != 0u;
     bool lit = wanted && (m.flags & LR_GPU_LIT) != 0u;
     if (has_scatter) {
-        bool visible = scatter(ray, weight, s, n, ids, m, first_lights);
+        bool visible = scatter(ray, weight, s, n, ids, m, absent, first_lights);
         lit = lit && visible;
     }
     film_sum sum = film_zero();
     if (has_fog && first_lights)
         film_accumulate(sum, fog);
+    vec3 emission = vec3(m.emission_red, m.emission_green, m.emission_blue);
     if (lit && first_lights)
-        film_accumulate(sum, weight * (m.ambient * color));
+        film_accumulate(sum, weight * (m.ambient * color + emission));
     uint count = hidden(work.light_count);
     lit = lit && count != 0u;
     for (uint l = 0u;;) {

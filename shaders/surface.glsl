@@ -4,12 +4,14 @@
 
 #include "candidates.glsl"
 #include "intersect.glsl"
+#include "uv.glsl"
 
 struct surface {
     vec3 position; // moved onto the surface where that is cheap
     float offset;  // how far off the surface a ray must start, metres
     vec3 normal;   // geometric, unit, outward
     uint object;
+    vec2 uv; // texture coordinates, in scenes with textures
 };
 
 // The error of the position, and so the offset of secondary rays, is proportional to the size of the
@@ -18,6 +20,8 @@ surface surface_at(uint primitive, float t, vec3 o, vec3 d)
 {
     vec3 position = o + d * t, normal = vec3(0.0, 1.0, 0.0);
     uint object = 0u;
+    vec2 uv = vec2(0.0);
+    bool planar = has_textures;
     vec3 a = abs(position);
     float reach = max(max(a.x, a.y), a.z);
     if (has_spheres && is_in(frame.spheres, primitive)) {
@@ -41,6 +45,9 @@ surface surface_at(uint primitive, float t, vec3 o, vec3 d)
         normal = f.normal;
         position = position + normal * (f.offset - ex_dot(normal, position));
         reach = max(reach, abs(f.offset));
+        if (has_textures)
+            uv = flat_uv(f, position);
+        planar = false;
     }
     bool ellipsoid = has_ellipsoids && is_in(frame.ellipsoids, primitive);
     bool box = has_boxes && is_in(frame.boxes, primitive);
@@ -54,9 +61,16 @@ surface surface_at(uint primitive, float t, vec3 o, vec3 d)
         if (has_cones)
             n = cone ? cone_surface_normal(s, p) : n;
         normal = solid_normal(s, n);
+        if (has_textures && has_boxes)
+            uv = box_uv(p, n);
+        planar = planar && !box;
         reach = max(reach, t);
     }
-    return surface(position, reach * LR_OFFSET, normal, object);
+    if (has_textures) {
+        vec2 projected = planar_uv(object, position);
+        uv = planar ? projected : uv;
+    }
+    return surface(position, reach * LR_OFFSET, normal, object, uv);
 }
 
 #endif

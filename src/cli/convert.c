@@ -1,4 +1,4 @@
-#include "cli/cli.h"
+#include "cli/load.h"
 #include "cli/output.h"
 
 #include <stddef.h>
@@ -7,10 +7,12 @@
 #include <string.h>
 
 typedef struct values {
+    load_values load;
     bool quiet;
 } values;
 
 static const option options[] = {
+    LOAD_OPTIONS(values),
     {.name = "quiet",
      .letter = 'q',
      .kind = OPTION_FLAG,
@@ -61,7 +63,7 @@ static int run(const command *self, int argc, char **argv)
     int code = check_writable(to);
     lr_scene *scene = NULL;
     if (code == EXIT_FINE) {
-        code = load_scene(from, &scene, NULL);
+        code = load_scene(from, &v.load, v.quiet, &scene, NULL);
     }
     if (code == EXIT_FINE) {
         code = convert(scene, to, format, v.quiet);
@@ -76,9 +78,10 @@ const command command_convert = {
     .summary = "write a scene in another language",
     .details =
         "Reads the scene IN (\"-\" is standard input) and writes it to OUT, in the language\n"
-        "that OUT's ending names: .yaml is lavaray's own, .pov POV-Ray 3.7's, .dat and .tac\n"
-        "Tachyon's. Meshes of a .yaml become binary PLY files beside it. What the language\n"
-        "cannot say is told, with how often it is there. Needs no Vulkan.",
+        "that OUT's ending names: .yaml is lavaray's own, .pov POV-Ray 3.7's, .dat and\n"
+        ".tac Tachyon's. Meshes of a .yaml become binary PLY files beside it, pictures\n"
+        "are copied there. What the language cannot say is told, with how often it is\n"
+        "there. Needs no Vulkan.",
     .examples = "  lavaray convert gears.nff gears.yaml\n"
                 "  lavaray convert scene.yaml scene.pov",
     .options = options,

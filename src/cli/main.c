@@ -93,30 +93,6 @@ int report_failure(const lr_error *error)
     return EXIT_DEVICE;
 }
 
-int load_scene(const char *path, lr_scene **scene, struct progress *bar)
-{
-    lr_error error = {0};
-    char *report = NULL;
-    lr_status status = lr_scene_load(path, scene, &report, &error);
-    if (status == LR_OK) {
-        return EXIT_FINE;
-    }
-    int code = EXIT_SCENE;
-    progress_clear(bar);
-    if (report) {
-        size_t length = strlen(report);
-        fputs(report, stderr);
-        if (length == 0 || report[length - 1] != '\n') {
-            fputc('\n', stderr);
-        }
-    } else {
-        error.status = status;
-        code = report_failure(&error);
-    }
-    free(report);
-    return code;
-}
-
 bool validation_wanted(void)
 {
     const char *value = getenv("LAVARAY_VALIDATION");

@@ -155,6 +155,8 @@ static read_function find_reader(const image_file *file)
         return image_read_exr;
     if (begins(file, "#?", 2))
         return image_read_hdr;
+    if (begins(file, "\xff\xd8\xff", 3))
+        return image_read_jpeg;
     /* A comment may follow the magic at once. */
     if (file->size < 3 || bytes[0] != 'P' || (!image_is_space(bytes[2]) && bytes[2] != '#'))
         return NULL;
@@ -173,8 +175,8 @@ lr_status lr_image_decode(const unsigned char *bytes, size_t size, const char *n
     read_function reader = find_reader(&file);
     if (!reader)
         return lr_fail(error, LR_ERROR_FILE,
-                       SHOWN ": not a picture in a known format; PPM, PGM, PBM, PNG, PFM, EXR and "
-                             "HDR are known",
+                       SHOWN ": not a picture in a known format; PPM, PGM, PBM, PNG, PFM, EXR, "
+                             "HDR and JPEG are known",
                        name);
     lr_status status = reader(&file, image, error);
     if (status != LR_OK)

@@ -1,5 +1,5 @@
-/* Pictures from files: PNM, PNG, PFM, EXR and Radiance HDR, as the file holds them, before any
- * decision about colour. */
+/* Pictures from files: PNM, PNG, PFM, EXR, Radiance HDR and JPEG, as the file holds them, before
+ * any decision about colour. */
 #ifndef LR_IMAGE_READ_H
 #define LR_IMAGE_READ_H
 
@@ -34,6 +34,7 @@ typedef struct lr_image {
  *   EXR  the first part, flat, without B44 and DWA: R G B A or Y A, else those of the first layer
  *        that has some. The picture is the display window, 0 where there are no data.
  *   HDR  RGBE with rows from top to bottom; EXPOSURE is not applied.
+ *   JPEG 8 bits, baseline and progressive, as they lie in the file: no rotation by EXIF.
  * LR_ERROR_FILE, with the path in the message, when the file cannot be read, is in no known format,
  * truncated, corrupt, empty of pixels, or larger than LR_IMAGE_MAX_SAMPLES; LR_ERROR_MEMORY. */
 lr_status lr_image_read(const char *path, lr_image *image, lr_error *error);

@@ -16,6 +16,7 @@ lr_status image_read_pfm(const image_file *file, lr_image *image, lr_error *erro
 lr_status image_read_png(const image_file *file, lr_image *image, lr_error *error);
 lr_status image_read_exr(const image_file *file, lr_image *image, lr_error *error);
 lr_status image_read_hdr(const image_file *file, lr_image *image, lr_error *error);
+lr_status image_read_jpeg(const image_file *file, lr_image *image, lr_error *error);
 
 /* Sets the picture's shape; refuses none of width, none of height and too many samples. */
 lr_status image_set_size(const image_file *file, lr_image *image, uint32_t width, uint32_t height,

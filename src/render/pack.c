@@ -43,7 +43,10 @@ static uint32_t pack_pattern_kind(const lr_pattern *pattern)
         [LR_PATTERN_STRIPES] = LR_GPU_PATTERN_STRIPES,
         [LR_PATTERN_GRADIENT] = LR_GPU_PATTERN_GRADIENT,
         [LR_PATTERN_RINGS] = LR_GPU_PATTERN_RINGS,
+        [LR_PATTERN_IMAGE] = LR_GPU_PATTERN_IMAGE,
     };
+    if (pattern->kind == LR_PATTERN_IMAGE)
+        return LR_GPU_PATTERN_IMAGE | pattern->texture << LR_GPU_TEXTURE_SHIFT;
     return kinds[pattern->kind] | (pattern->object_space ? LR_GPU_OBJECT_SPACE : 0);
 }
 
@@ -51,8 +54,9 @@ static void pack_material(const lr_scene *scene, const lr_material *m, struct gp
 {
     lr_color ambient = multiply(m->ambient, scene->ambient);
     bool lit = !lr_color_is_black(ambient) || !lr_color_is_black(m->diffuse) ||
-               !lr_color_is_black(m->specular);
+               !lr_color_is_black(m->specular) || !lr_color_is_black(m->emission);
     const lr_pattern *p = &m->color;
+    bool image = p->kind == LR_PATTERN_IMAGE;
     bool gradient = p->kind == LR_PATTERN_GRADIENT;
     lr_vec3 direction = gradient ? p->direction : lr_vec3_normalize(p->direction);
     double length2 = lr_vec3_dot(direction, direction);
@@ -60,19 +64,25 @@ static void pack_material(const lr_scene *scene, const lr_material *m, struct gp
         .color0 = lr_pack_vec3(p->colors[0]),
         .pattern = pack_pattern_kind(p),
         .color1 = lr_pack_vec3(p->kind == LR_PATTERN_NONE ? p->colors[0] : p->colors[1]),
-        .inv_size = p->size > 0 ? (float)(1 / p->size) : 1,
+        .inv_size = image         ? (float)m->alpha_cutoff
+                    : p->size > 0 ? (float)(1 / p->size)
+                                  : 1,
         .pattern_origin = lr_pack_vec3(p->origin),
         .inv_length2 = length2 > 0 ? (float)(1 / length2) : 0,
         .pattern_direction = lr_pack_vec3(direction),
         .flags = (m->fresnel ? LR_GPU_FRESNEL : 0) |
-                 (m->highlight == LR_HIGHLIGHT_PHONG ? LR_GPU_PHONG : 0) | (lit ? LR_GPU_LIT : 0),
+                 (m->highlight == LR_HIGHLIGHT_PHONG ? LR_GPU_PHONG : 0) | (lit ? LR_GPU_LIT : 0) |
+                 (m->one_sided ? LR_GPU_ONE_SIDED : 0),
         .ambient = lr_pack_vec3(ambient),
         .shininess = (float)m->shininess,
         .diffuse = lr_pack_vec3(m->diffuse),
         .ior = (float)m->ior,
         .specular = lr_pack_vec3(m->specular),
+        .emission_red = (float)m->emission.x,
         .reflect = lr_pack_vec3(m->reflect),
+        .emission_green = (float)m->emission.y,
         .transmit = lr_pack_vec3(m->transmit),
+        .emission_blue = (float)m->emission.z,
     };
 }
 
@@ -86,9 +96,14 @@ static lr_status pack_materials(const lr_scene *scene, lr_packed_scene *packed, 
         if (lr_pack_rows(packed, &record, sizeof record / 16) == UINT32_MAX)
             return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's materials");
         uint32_t *use = packed->constants;
-        use[LR_SPEC_PATTERNS] |= m->color.kind != LR_PATTERN_NONE;
+        bool image = m->color.kind == LR_PATTERN_IMAGE;
+        bool cut = m->one_sided || (image && m->alpha_cutoff > 0);
+        use[LR_SPEC_TEXTURES] |= image;
+        use[LR_SPEC_CUTOUTS] |= cut;
+        use[LR_SPEC_PATTERNS] |= !image && m->color.kind != LR_PATTERN_NONE;
         use[LR_SPEC_SPECULAR] |= !lr_color_is_black(m->specular);
-        use[LR_SPEC_SCATTER] |= !lr_color_is_black(m->reflect) || !lr_color_is_black(m->transmit);
+        use[LR_SPEC_SCATTER] |=
+            cut || !lr_color_is_black(m->reflect) || !lr_color_is_black(m->transmit);
         use[LR_SPEC_FRESNEL] |= m->fresnel;
     }
     return LR_OK;
@@ -177,11 +192,15 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
     };
     packed->constants[LR_SPEC_FOG] = scene->fog_density > 0;
     lr_light light = default_light(forward, right, up);
-    lr_status status = pack_materials(scene, packed, error);
+    lr_status status = lr_pack_texture_records(scene, packed, error);
+    if (!status)
+        status = pack_materials(scene, packed, error);
     if (!status)
         status = pack_lights(scene, &light, packed, error);
     if (!status)
         status = lr_pack_objects(scene, settings, packed, error);
+    if (!status)
+        status = lr_pack_textures(scene, packed, error);
     if (status)
         lr_packed_scene_free(packed);
     return status;

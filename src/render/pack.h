@@ -34,6 +34,11 @@ uint32_t lr_pack_rows(lr_packed_scene *packed, const void *record, uint32_t rows
 lr_status lr_pack_objects(const lr_scene *scene, const lr_settings *settings,
                           lr_packed_scene *packed, lr_error *error);
 
+/* pack_textures.c: first makes room for the records of the scene's textures, texture i in row i,
+ * and last fills them and appends their texels. */
+lr_status lr_pack_texture_records(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);
+lr_status lr_pack_textures(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);
+
 vec3 lr_pack_vec3(lr_vec3 v);
 bool lr_color_is_black(lr_color color);
 

@@ -74,6 +74,7 @@ const lr_record lr_background_record =
 /* ---- Patterns and materials ---------------------------------------------------------------- */
 
 static const char *const spaces[] = {"world", "object", NULL};
+static const char *const wraps[] = {"repeat", "clamp", "mirror", NULL};
 static const char *const highlights[] = {"blinn", "phong", NULL};
 
 #define SPACE                                                                                      \
@@ -122,17 +123,26 @@ static const lr_field rings_fields[] = {
      MEMBER(lr_pattern_draft, pattern.direction), .doc = "What the rings run around."},
     SPACE,
 };
+static const lr_field picture_fields[] = {
+    {"image", LR_FIELD_TEXT, LR_REQUIRED, MEMBER(lr_pattern_draft, image),
+     .doc = "The file of the picture, as seen from the scene's folder."},
+    {"tint", LR_FIELD_COLOR, 0, COLOR, DEFAULT(1, 1, 1),
+     MEMBER(lr_pattern_draft, pattern.colors[0]), .doc = "Multiplies the picture's colours."},
+    {"wrap", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_pattern_draft, wrap), .choices = wraps,
+     .doc = "How the picture goes on beyond its edges."},
+};
 const lr_record lr_pattern_records[] = {
     RECORD("checker", "Cubes in two colours.", checker_fields, LR_PATTERN_CHECKER),
     RECORD("stripes", "Slabs in two colours.", stripes_fields, LR_PATTERN_STRIPES),
     RECORD("gradient", "A blend along a line.", gradient_fields, LR_PATTERN_GRADIENT),
     RECORD("rings", "Cylinders around an axis in two colours.", rings_fields, LR_PATTERN_RINGS),
+    RECORD("image", "A picture from a file.", picture_fields, LR_PATTERN_IMAGE),
 };
 const uint32_t lr_pattern_record_count = COUNT(lr_pattern_records);
 
 static const lr_field material_fields[] = {
     {"color", LR_FIELD_PAINT, 0, COLOR, DEFAULT(0.8, 0.8, 0.8), MEMBER(lr_material, color),
-     .doc = "The colour of the surface: a colour or a pattern."},
+     .doc = "The colour of the surface: a colour, a pattern or a picture."},
     {"ambient", LR_FIELD_COLOR, LR_DERIVED, COLOR, MEMBER(lr_material, ambient),
      .derived = "the same as `diffuse`", .doc = "Share of the scene's ambient light."},
     {"diffuse", LR_FIELD_COLOR, LR_DERIVED, COLOR, MEMBER(lr_material, diffuse),
@@ -155,6 +165,12 @@ static const lr_field material_fields[] = {
      .doc = "Per metre inside: what is left is exp(-absorption * distance)."},
     {"priority", LR_FIELD_INTEGER, 0, RANGE(-100, 100), DEFAULT(0), MEMBER(lr_material, priority),
      .doc = "Where media overlap, the higher one fills the overlap."},
+    {"emission", LR_FIELD_COLOR, 0, COLOR, DEFAULT(0), MEMBER(lr_material, emission),
+     .doc = "Light that the surface shows by itself; it lights nothing else."},
+    {"alpha_cutoff", LR_FIELD_NUMBER, 0, RANGE(0, 1), DEFAULT(0), MEMBER(lr_material, alpha_cutoff),
+     .doc = "Where the picture's alpha is below this, there is no surface."},
+    {"one_sided", LR_FIELD_BOOLEAN, 0, DEFAULT(0), MEMBER(lr_material, one_sided),
+     .doc = "Flat and open objects are not there as seen from behind."},
 };
 const lr_record lr_material_record =
     RECORD("material", "How a surface and its inside look.", material_fields, 0);
@@ -324,6 +340,16 @@ static const lr_field triangle_fields[] = {
     POINT("c", triangle.c, "The last."),
     PLACEMENT,
 };
+static const lr_field mesh_fields[] = {
+    {"file", LR_FIELD_TEXT, LR_REQUIRED | LR_DERIVED, MEMBER(lr_object_draft, file),
+     .derived = "the path of a model, such as spot.obj",
+     .doc = "A glTF, GLB, OBJ, PLY or STL file, as seen from the scene's folder."},
+    {"material", LR_FIELD_MATERIAL, LR_DERIVED, .derived = "the group's, else the file's own",
+     .doc = "For all that is in the file: the name of one of `materials`, or a material written "
+            "here."},
+    {"shadow", LR_FIELD_BOOLEAN, 0, DEFAULT(1), OBJECT(shadow), .doc = "Whether it casts shadows."},
+    TRANSFORM,
+};
 const lr_record lr_object_records[] = {
     RECORD("sphere", "A ball.", sphere_fields, LR_SPHERE),
     RECORD("plane", "An endless plane.", plane_fields, LR_PLANE),
@@ -333,6 +359,7 @@ const lr_record lr_object_records[] = {
     RECORD("cylinder", "A round bar between two points.", cylinder_fields, LR_CYLINDER),
     RECORD("cone", "A cone, or a cut-off one with `top_radius`.", cone_fields, LR_CONE),
     RECORD("triangle", "A flat triangle.", triangle_fields, LR_TRIANGLE),
+    RECORD("mesh", "The model in a file of another program.", mesh_fields, LR_MESH),
 };
 const uint32_t lr_object_record_count = COUNT(lr_object_records);
 

@@ -70,6 +70,7 @@ typedef struct lr_object_draft {
     lr_object object;
     lr_vec3 translate, scale;
     lr_transform rotate, matrix;
+    const char *file; /* mesh */
 } lr_object_draft;
 
 typedef struct lr_light_draft {
@@ -80,7 +81,9 @@ typedef struct lr_light_draft {
 typedef struct lr_pattern_draft {
     lr_pattern pattern;
     lr_vec3 to;
-    uint32_t space; /* 0 world, 1 object */
+    uint32_t space;    /* 0 world, 1 object */
+    const char *image; /* as written */
+    uint32_t wrap;     /* lr_wrap */
 } lr_pattern_draft;
 
 typedef struct lr_rotation_draft {

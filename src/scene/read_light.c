@@ -41,7 +41,6 @@ static bool complete_spot(lr_reader *reader, const lr_record *record, const lr_g
 
 void lr_read_lights(lr_reader *reader, const lr_node *node)
 {
-    lr_scene *scene = reader->scene;
     if (node->kind != LR_NODE_LIST) {
         lr_report_type(reader, node, "lights",
                        node->kind == LR_NODE_MAP
@@ -67,11 +66,11 @@ void lr_read_lights(lr_reader *reader, const lr_node *node)
         if (draft.light.kind == LR_LIGHT_SPOT &&
             !complete_spot(reader, record, &given, key, &draft))
             continue;
-        if (!lr_array_reserve((void **)&scene->lights, scene->light_count, &reader->light_capacity,
-                              sizeof *scene->lights)) {
+        lr_light *light = lr_scene_add_light(&reader->builder);
+        if (!light) {
             reader->report->no_memory = true;
             return;
         }
-        scene->lights[scene->light_count++] = draft.light;
+        *light = draft.light;
     }
 }

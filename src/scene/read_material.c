@@ -2,11 +2,32 @@
 #include "scene/read.h"
 
 #include "base/memory.h"
+#include "scene/path.h"
+#include "scene/texture.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* The texture that an image pattern names. */
+static bool load_image(lr_reader *reader, const lr_node *node, const lr_pattern_draft *draft,
+                       uint32_t *texture)
+{
+    char *path;
+    lr_error error = {0};
+    lr_status status = lr_path_resolve(reader->report->name, draft->image,
+                                       reader->options.allow_path, &path, &error);
+    lr_wrap wrap = (lr_wrap)draft->wrap;
+    if (!status)
+        status = lr_texture_load(&reader->builder, path, wrap, wrap, texture, &error);
+    free(path);
+    if (status == LR_ERROR_MEMORY)
+        reader->report->no_memory = true;
+    else if (status)
+        lr_report_add(reader->report, node->offset, "%s", error.message);
+    return !status;
+}
 
 /* The colour of a material: a colour, or a mapping with a key that names a pattern. */
 static bool read_paint(lr_reader *reader, const lr_node *node, const lr_field *field,
@@ -33,9 +54,9 @@ static bool read_paint(lr_reader *reader, const lr_node *node, const lr_field *f
             for (uint32_t i = 0; i < lr_pattern_record_count; i++)
                 lr_nearest_offer(&nearest, lr_pattern_records[i].name);
         }
-        lr_report_unknown(reader, nearest.best ? at : node,
-                          "color has no pattern, expected checker, stripes, gradient or rings",
-                          &nearest);
+        lr_report_unknown(
+            reader, nearest.best ? at : node,
+            "color has no pattern, expected checker, stripes, gradient, rings or image", &nearest);
         return false;
     }
     lr_pattern_draft draft = {.pattern.direction = {0, 1, 0}, .pattern.size = 1};
@@ -45,6 +66,9 @@ static bool read_paint(lr_reader *reader, const lr_node *node, const lr_field *f
     *pattern = draft.pattern;
     pattern->kind = (lr_pattern_kind)record->kind;
     pattern->object_space = draft.space == 1;
+    if (pattern->kind == LR_PATTERN_IMAGE)
+        return load_image(reader, lr_given_value(&given, record, "image"), &draft,
+                          &pattern->texture);
     if (pattern->kind == LR_PATTERN_GRADIENT) {
         pattern->direction = lr_vec3_sub(draft.to, pattern->origin);
         if (!(lr_vec3_length(pattern->direction) >= LR_LENGTH_MIN)) {
@@ -107,13 +131,11 @@ static lr_material *add_material(lr_reader *reader, size_t offset, uint32_t *ind
         reader->full = true;
         return NULL;
     }
-    if (!lr_array_reserve((void **)&scene->materials, scene->material_count,
-                          &reader->material_capacity, sizeof *scene->materials)) {
+    *index = scene->material_count;
+    lr_material *material = lr_scene_add_material(&reader->builder);
+    if (!material)
         reader->report->no_memory = true;
-        return NULL;
-    }
-    *index = scene->material_count++;
-    return &scene->materials[*index];
+    return material;
 }
 
 void lr_read_materials(lr_reader *reader, const lr_node *node)

@@ -1,24 +1,21 @@
 /* A scene from text: the top level, and the functions of the library. */
+#include "scene/load.h"
 #include "scene/read.h"
 
-#include "base/file.h"
 #include "base/hash.h"
+#include "base/status.h"
 #include "base/memory.h"
 #include "scene/build.h"
-#include "scene/nff.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 static lr_camera *add_camera(lr_reader *reader)
 {
-    lr_scene *scene = reader->scene;
-    if (!lr_array_reserve((void **)&scene->cameras, scene->camera_count, &reader->camera_capacity,
-                          sizeof *scene->cameras)) {
+    lr_camera *camera = lr_scene_add_camera(&reader->builder);
+    if (!camera)
         reader->report->no_memory = true;
-        return NULL;
-    }
-    return &scene->cameras[scene->camera_count++];
+    return camera;
 }
 
 static void read_camera(lr_reader *reader, const lr_node *node, const lr_node *name, lr_vec3 up)
@@ -200,13 +197,16 @@ static const lr_language scene_language = {
 };
 
 /* Reads the report's text into the scene; what is wrong goes to the report. */
-static void read_text(lr_scene *scene, lr_report *report)
+static void read_text(lr_scene *scene, lr_report *report, const lr_load_options *options)
 {
     if (!lr_text_check(report))
         return;
     lr_tree tree;
     lr_tree_read(&tree, report);
-    lr_reader reader = {.report = report, .scene = scene, .default_material = UINT32_MAX};
+    lr_reader reader = {
+        .report = report, .scene = scene, .builder.scene = scene, .default_material = UINT32_MAX};
+    if (options)
+        reader.options = *options;
     reader.locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     if (!reader.locale)
         report->no_memory = true;
@@ -214,14 +214,16 @@ static void read_text(lr_scene *scene, lr_report *report)
         lr_read_scene(&reader, tree.root);
     if (reader.locale)
         freelocale(reader.locale);
+    lr_mesh_files_free(&reader.files);
     lr_names_free(&reader.materials);
     lr_tree_free(&tree);
 }
 
 lr_status lr_scene_from_text(const char *text, size_t length, const char *name,
-                             const lr_language *language,
-                             void (*read)(lr_scene *scene, lr_report *report), lr_scene **scene,
-                             char **report, lr_error *error)
+                             const lr_language *language, const lr_load_options *options,
+                             void (*read)(lr_scene *scene, lr_report *report,
+                                          const lr_load_options *options),
+                             lr_scene **scene, char **report, lr_error *error)
 {
     *scene = NULL;
     *report = NULL;
@@ -238,10 +240,12 @@ lr_status lr_scene_from_text(const char *text, size_t length, const char *name,
     problems->name = name;
     problems->text = text;
     problems->length = length;
-    read(made, problems);
+    read(made, problems, options);
     if (problems->no_memory)
         goto no_memory;
-    if (problems->count > 0) {
+    if (problems->interrupted) {
+        status = lr_fail(error, LR_ERROR_INTERRUPTED, "%s: interrupted", name);
+    } else if (problems->count > 0) {
         *report = lr_report_text(problems);
         if (!*report)
             goto no_memory;
@@ -263,25 +267,16 @@ done:
     return status;
 }
 
+lr_status lr_scene_parse_with(const char *text, size_t length, const char *name,
+                              const lr_load_options *options, lr_scene **scene, char **report,
+                              lr_error *error)
+{
+    return lr_scene_from_text(text, length, name, &scene_language, options, read_text, scene,
+                              report, error);
+}
+
 lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_scene **scene,
                          char **report, lr_error *error)
 {
-    return lr_scene_from_text(text, length, name, &scene_language, read_text, scene, report, error);
-}
-
-lr_status lr_scene_load(const char *path, lr_scene **scene, char **report, lr_error *error)
-{
-    char *text;
-    size_t length;
-    *scene = NULL;
-    *report = NULL;
-    bool nff = lr_nff_is_path(path);
-    lr_status status =
-        lr_file_read(path, nff ? LR_NFF_TEXT_MAX : LR_TEXT_MAX, &text, &length, error);
-    if (status != LR_OK)
-        return status;
-    const char *name = strcmp(path, "-") == 0 ? "<stdin>" : path;
-    status = (nff ? lr_nff_read : lr_scene_parse)(text, length, name, scene, report, error);
-    free(text);
-    return status;
+    return lr_scene_parse_with(text, length, name, NULL, scene, report, error);
 }

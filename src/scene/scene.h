@@ -76,9 +76,8 @@ typedef struct lr_material {
     bool fresnel;
     lr_color absorption; /* per metre, Beer-Lambert: exp(-absorption * distance) */
     int priority;        /* -100..100: which of two overlapping media fills the overlap */
-    double
-        alpha_cutoff; /* where its texture's alpha is below, there is no surface; 0: everywhere */
-    bool one_sided;   /* from behind, flats, triangles and open cones are not there */
+    double alpha_cutoff; /* where its texture's alpha is below, no surface; 0: everywhere */
+    bool one_sided;      /* from behind, flats, triangles and open cones are not there */
 } lr_material;
 
 typedef enum lr_object_kind {

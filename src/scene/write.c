@@ -110,12 +110,22 @@ lr_light lr_default_light(const lr_camera *camera)
         .shadows = true};
 }
 
-const char *lr_mesh_path(const char *path, uint32_t number, char *buffer, size_t size)
+const char *lr_side_path(const char *path, uint32_t number, const char *ending, char *buffer,
+                         size_t size)
 {
     const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
     size_t stem = dot && dot > (slash ? slash + 1 : path) ? (size_t)(dot - path) : strlen(path);
-    int length = snprintf(buffer, size, "%.*s-%u.ply", (int)stem, path, (unsigned)number + 1);
+    int length = snprintf(buffer, size, "%.*s-%u%s", (int)stem, path, (unsigned)number + 1, ending);
     return length > 0 && (size_t)length < size ? buffer : NULL;
+}
+
+const char *lr_texture_ending(const lr_texture *texture)
+{
+    struct stat info;
+    const char *slash = strrchr(texture->name, '/'), *dot = strrchr(texture->name, '.');
+    if (!dot || (slash && dot < slash) || stat(texture->name, &info) != 0 || !S_ISREG(info.st_mode))
+        return NULL;
+    return dot;
 }
 
 /* ---- Files --------------------------------------------------------------------------------- */
@@ -139,41 +149,81 @@ bool lr_scene_format_from_path(const char *path, lr_scene_format *format)
     return false;
 }
 
+/* A file to be written. */
+typedef struct output {
+    char *path, *bytes;
+    size_t size;
+} output;
+
+static void free_outputs(output *files, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        free(files[i].path);
+        free(files[i].bytes);
+    }
+    free(files);
+}
+
 static bool exists(const char *path)
 {
     struct stat info;
     return lstat(path, &info) == 0;
 }
 
-/* A mesh file that is there already is replaced only along with the scene that it belongs to. */
-static lr_status check_mesh_files(const lr_scene *scene, const char *path, lr_error *error)
+/* A file that is there already is replaced only along with the scene that it belongs to. */
+static lr_status name_file(const char *path, uint32_t number, const char *ending, output *file,
+                           lr_error *error)
 {
     char name[4096];
-    bool replaces = exists(path);
-    for (uint32_t i = 0; i < scene->mesh_count; i++) {
-        if (!lr_mesh_path(path, i, name, sizeof name))
-            return lr_fail(error, LR_ERROR_FILE, "%.500s: the name is too long", path);
-        if (!replaces && exists(name))
-            return lr_fail(error, LR_ERROR_FILE,
-                           "%.500s: exists already and would be replaced by a mesh of %.300s; move "
-                           "it or choose another name",
-                           name, path);
-    }
-    return LR_OK;
+    if (!lr_side_path(path, number, ending, name, sizeof name))
+        return lr_fail(error, LR_ERROR_FILE, "%.500s: the name is too long", path);
+    if (exists(name) && !exists(path))
+        return lr_fail(error, LR_ERROR_FILE,
+                       "%.500s: exists already and would be replaced by a part of %.300s; move it "
+                       "or choose another name",
+                       name, path);
+    file->path = lr_string_copy(name, strlen(name));
+    return file->path ? LR_OK : lr_fail(error, LR_ERROR_MEMORY, "out of memory for a file's name");
 }
 
-static lr_status write_mesh_files(const lr_scene *scene, const char *path, lr_error *error)
+static lr_status make_mesh_file(const lr_scene *scene, const char *path, uint32_t mesh,
+                                output *file, lr_error *error)
 {
-    lr_status status = check_mesh_files(scene, path, error);
-    for (uint32_t i = 0; i < scene->mesh_count && status == LR_OK; i++) {
-        char name[4096];
-        size_t size;
-        char *bytes = lr_mesh_ply(&scene->meshes[i], &size);
-        if (!bytes)
-            return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the file of a mesh");
-        status = lr_file_write(lr_mesh_path(path, i, name, sizeof name), bytes, size, error);
-        free(bytes);
-    }
+    lr_status status = name_file(path, mesh, ".ply", file, error);
+    if (status == LR_OK && !(file->bytes = lr_mesh_ply(&scene->meshes[mesh], &file->size)))
+        status = lr_fail(error, LR_ERROR_MEMORY, "out of memory for the file of a mesh");
+    return status;
+}
+
+static lr_status make_texture_file(const lr_scene *scene, const char *path, uint32_t index,
+                                   output *file, lr_error *error)
+{
+    const lr_texture *texture = &scene->textures[index];
+    const char *ending = lr_texture_ending(texture);
+    if (!ending)
+        return LR_OK;
+    lr_status status = name_file(path, index, ending, file, error);
+    return status ? status
+                  : lr_file_read(texture->name, SIZE_MAX / 2, &file->bytes, &file->size, error);
+}
+
+/* All files beside path are complete in memory before the first is written, for one of them may be
+ * the picture that another one copies. */
+static lr_status write_side_files(const lr_scene *scene, const char *path, lr_error *error)
+{
+    size_t count = (size_t)scene->mesh_count + scene->texture_count;
+    output *files = lr_alloc(count, sizeof *files);
+    if (!files)
+        return lr_fail(error, LR_ERROR_MEMORY, "out of memory for a scene's files");
+    lr_status status = LR_OK;
+    for (uint32_t i = 0; i < scene->mesh_count && status == LR_OK; i++)
+        status = make_mesh_file(scene, path, i, &files[i], error);
+    for (uint32_t i = 0; i < scene->texture_count && status == LR_OK; i++)
+        status = make_texture_file(scene, path, i, &files[scene->mesh_count + i], error);
+    for (size_t i = 0; i < count && status == LR_OK; i++)
+        if (files[i].path)
+            status = lr_file_write(files[i].path, files[i].bytes, files[i].size, error);
+    free_outputs(files, count);
     return status;
 }
 
@@ -257,7 +307,7 @@ lr_status lr_scene_write(const lr_scene *scene, const char *path, lr_scene_forma
     }
     lr_status status = LR_OK;
     if (format == LR_SCENE_YAML)
-        status = write_mesh_files(scene, path, error);
+        status = write_side_files(scene, path, error);
     if (status == LR_OK)
         status = lr_file_write(path, text, length, error);
     free(text);

@@ -54,9 +54,13 @@ void lr_camera_frame(const lr_scene *scene, const lr_camera *camera, lr_vec3 *fo
 /* The light that the renderer adds to a scene that names none, as seen by the camera. */
 lr_light lr_default_light(const lr_camera *camera);
 
-/* The file of a mesh's triangles beside path: "out-1.ply" for "out.yaml" and number 0. Returns
- * buffer, or NULL when it does not fit. */
-const char *lr_mesh_path(const char *path, uint32_t number, char *buffer, size_t size);
+/* A file beside path: "out-1.ply" for "out.yaml", number 0 and ".ply". Returns buffer, or NULL when
+ * it does not fit. */
+const char *lr_side_path(const char *path, uint32_t number, const char *ending, char *buffer,
+                         size_t size);
+
+/* The ending of a texture's file, such as ".png"; NULL when it was not loaded from one. */
+const char *lr_texture_ending(const lr_texture *texture);
 
 /* The mesh as a binary PLY file of *size bytes, which the caller frees; NULL when memory is out. */
 char *lr_mesh_ply(const lr_mesh *mesh, size_t *size);

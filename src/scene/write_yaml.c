@@ -206,13 +206,42 @@ static void put_surroundings(lr_writer *writer)
     }
 }
 
+static void put_file_name(lr_writer *writer, uint32_t number, const char *ending)
+{
+    char path[4096];
+    const char *name = lr_side_path(writer->path, number, ending, path, sizeof path);
+    const char *slash = name ? strrchr(name, '/') : NULL;
+    put_text(writer->out, slash ? slash + 1 : name ? name : "");
+}
+
+/* False when the texture is in no file of its own. */
+static bool put_picture(lr_writer *writer, const lr_pattern *pattern, const lr_record *record)
+{
+    const lr_texture *texture = &writer->scene->textures[pattern->texture];
+    const char *ending = lr_texture_ending(texture);
+    if (!ending) {
+        lr_writer_cannot(writer, "pictures inside of models are not written, only their tint is");
+        return false;
+    }
+    if (texture->wrap_u != texture->wrap_v)
+        lr_writer_cannot(writer, "pictures that go on in two ways are written with one of them");
+    mapping map = {.writer = writer};
+    lr_pattern_draft draft = {.pattern = *pattern, .wrap = (uint32_t)texture->wrap_u};
+    put_key(&map, "image");
+    put_file_name(writer, pattern->texture, ending);
+    put_record(&map, record, &draft, NULL);
+    end_mapping(&map);
+    return true;
+}
+
 static void put_paint(lr_writer *writer, const lr_pattern *pattern)
 {
     const lr_record *record =
         record_of(lr_pattern_records, lr_pattern_record_count, (int)pattern->kind);
-    if (pattern->kind == LR_PATTERN_IMAGE)
-        lr_writer_cannot(writer, "pictures on surfaces are not written, only their tint is");
-    if (!record || pattern->kind == LR_PATTERN_IMAGE) {
+    bool picture = pattern->kind == LR_PATTERN_IMAGE;
+    if (picture && put_picture(writer, pattern, record))
+        return;
+    if (picture || pattern->kind == LR_PATTERN_NONE) {
         put_color(writer->out, pattern->colors[0]);
         return;
     }
@@ -278,15 +307,6 @@ static void put_matrix(mapping *map, const lr_transform *t)
     fputc(']', map->writer->out);
 }
 
-static void put_mesh_file(mapping *map, uint32_t mesh)
-{
-    char path[4096];
-    put_key(map, "file");
-    const char *name = lr_mesh_path(map->writer->path, mesh, path, sizeof path);
-    const char *slash = name ? strrchr(name, '/') : NULL;
-    put_text(map->writer->out, slash ? slash + 1 : name ? name : "");
-}
-
 static void put_object(lr_writer *writer, const lr_object *object)
 {
     const lr_record *record =
@@ -294,17 +314,14 @@ static void put_object(lr_writer *writer, const lr_object *object)
     lr_object_draft draft = {.object = *object};
     mapping map = {.writer = writer};
     bool is_mesh = object->kind == LR_MESH;
-    fprintf(writer->out, "  - %s: ", is_mesh ? "mesh" : record->name);
-    if (is_mesh)
-        put_mesh_file(&map, object->mesh);
-    else
-        put_record(&map, record, &draft, NULL);
+    fprintf(writer->out, "  - %s: ", record->name);
+    if (is_mesh) {
+        put_key(&map, "file");
+        put_file_name(writer, object->mesh, ".ply");
+    }
+    put_record(&map, record, &draft, NULL);
     put_key(&map, "material");
     put_material_name(writer, object->material);
-    if (is_mesh && !object->shadow) {
-        put_key(&map, "shadow");
-        fputs("false", writer->out);
-    }
     if (object->transformed)
         put_matrix(&map, &object->to_world);
     if (object->inward)

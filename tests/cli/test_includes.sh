@@ -11,7 +11,7 @@ problem() {
 may_include() {
     case $1 in
     base) echo base ;;
-    scene) echo scene base ;;
+    scene) echo scene image base ;;
     bvh) echo bvh base ;;
     gpu) echo gpu base ;;
     image) echo image base ;;
@@ -64,6 +64,7 @@ only vulkan/ gpu
 only GLFW/ preview
 only libfyaml scene
 only png image
+only stb image
 only OpenEXR/ image
 only jansson cli scene tester
 

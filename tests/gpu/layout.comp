@@ -21,6 +21,7 @@ layout(std430, set = 0, binding = LR_BIND_COUNT) readonly buffer RecordBlock
     gpu_object some_object[2];
     gpu_medium some_medium[2];
     gpu_material some_material[2];
+    gpu_texture some_texture[2];
     gpu_light some_light[2];
     gpu_ray some_ray[2];
     gpu_hit some_hit[2];
@@ -94,8 +95,15 @@ void put_material(gpu_material x)
     put_vec3(x.color0); put(x.pattern); put_vec3(x.color1); put(floatBitsToUint(x.inv_size));
     put_vec3(x.pattern_origin); put(floatBitsToUint(x.inv_length2)); put_vec3(x.pattern_direction);
     put(x.flags); put_vec3(x.ambient); put(floatBitsToUint(x.shininess)); put_vec3(x.diffuse);
-    put(floatBitsToUint(x.ior)); put_vec3(x.specular); put(x.unused0); put_vec3(x.reflect);
-    put(x.unused1); put_vec3(x.transmit); put(x.unused2);
+    put(floatBitsToUint(x.ior)); put_vec3(x.specular);
+    put(floatBitsToUint(x.emission_red)); put_vec3(x.reflect);
+    put(floatBitsToUint(x.emission_green)); put_vec3(x.transmit);
+    put(floatBitsToUint(x.emission_blue));
+}
+
+void put_texture(gpu_texture x)
+{
+    put(x.texels); put(x.size); put(x.curve); put(x.flags);
 }
 
 void put_light(gpu_light x)
@@ -138,6 +146,7 @@ void put_object(uint index)
 void main()
 {
     uint i = work.first;
+    put_texture(load_texture(i)); // the first rows
     put_sphere(load_sphere(i));
     put_solid(load_solid(i));
     put_plane(load_plane(i));

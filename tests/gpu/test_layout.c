@@ -82,11 +82,15 @@ static const member members[] = {
     FLOATS(gpu_material, diffuse),
     FLOATS(gpu_material, ior),
     FLOATS(gpu_material, specular),
-    WORD(gpu_material, unused0),
+    FLOATS(gpu_material, emission_red),
     FLOATS(gpu_material, reflect),
-    WORD(gpu_material, unused1),
+    FLOATS(gpu_material, emission_green),
     FLOATS(gpu_material, transmit),
-    WORD(gpu_material, unused2),
+    FLOATS(gpu_material, emission_blue),
+    WORD(gpu_texture, texels),
+    WORD(gpu_texture, size),
+    WORD(gpu_texture, curve),
+    WORD(gpu_texture, flags),
     FLOATS(gpu_light, position),
     FLOATS(gpu_light, half_falloff),
     FLOATS(gpu_light, color),
@@ -331,9 +335,9 @@ static void test_offsets(void **state)
 #define RECORDS 3 /* of each kind; the last is loaded */
 
 /* The rows in the order of a packed scene, and what layout.comp makes of them. */
-static const char *const kinds[] = {"gpu_sphere", "gpu_solid",    "gpu_plane",  "gpu_flat",
-                                    "gpu_object", "gpu_material", "gpu_medium", "gpu_light",
-                                    "gpu_ray",    "gpu_hit"};
+static const char *const kinds[] = {"gpu_texture", "gpu_sphere", "gpu_solid",    "gpu_plane",
+                                    "gpu_flat",    "gpu_object", "gpu_material", "gpu_medium",
+                                    "gpu_light",   "gpu_ray",    "gpu_hit"};
 enum { KIND_COUNT = sizeof kinds / sizeof *kinds, ROW_KINDS = KIND_COUNT - 2 };
 
 /* Floats that are no subnormals, and integers that would be: small ones. */
@@ -370,7 +374,7 @@ static void expect_words(upload *u, const uint32_t *words, size_t size)
 
 static void fill_upload(upload *u, uint32_t seed)
 {
-    uint32_t first[ROW_KINDS];
+    uint32_t first[ROW_KINDS], textures;
     for (uint32_t kind = 0; kind < KIND_COUNT; kind++) {
         uint32_t *to =
             kind < ROW_KINDS ? &u->rows[u->row_words] : (kind == ROW_KINDS ? u->rays : u->hits);
@@ -386,11 +390,12 @@ static void fill_upload(upload *u, uint32_t seed)
     struct gpu_frame frame;
     fill_record(&seed, "gpu_frame", u->frame);
     memcpy(&frame, u->frame, sizeof frame);
-    uint32_t *firsts[] = {&frame.spheres.base, &frame.solids.base, &frame.planes.base,
-                          &frame.flats.base,   &frame.objects,     &frame.materials,
-                          &frame.media,        &frame.lights};
+    uint32_t *firsts[] = {&textures,          &frame.spheres.base, &frame.solids.base,
+                          &frame.planes.base, &frame.flats.base,   &frame.objects,
+                          &frame.materials,   &frame.media,        &frame.lights};
     for (uint32_t i = 0; i < ROW_KINDS; i++)
         *firsts[i] = first[i];
+    assert_int_equal(textures, 0);
     memcpy(u->frame, &frame, sizeof frame);
     expect_words(u, u->frame, sizeof frame);
     struct gpu_work work;

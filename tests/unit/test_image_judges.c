@@ -85,6 +85,37 @@ static void test_netpbm(void **state)
     }
 }
 
+/* The two decoders round and smooth the colours differently, so the picture has soft ones. */
+static void test_netpbm_jpeg(void **state)
+{
+    (void)state;
+    if (!installed("pnmtojpeg") || !installed("jpegtopnm") || !installed("pamscale"))
+        skip();
+    static const char *const options[] = {"", "-progressive", "-restart 2", "-greyscale",
+                                          "-sample 1x1 -quality 95"};
+    write_picture(255);
+    for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
+        char command[256];
+        snprintf(command, sizeof command,
+                 "pamcut -width 5 -height 4 in.ppm | pamscale -linear -width %d -height %d | "
+                 "pnmtojpeg %s > a.jpg && jpegtopnm a.jpg > b.pnm",
+                 WIDTH, HEIGHT, options[i]);
+        lr_image ours = made_by(command, "a.jpg"), theirs = made_by("true", "b.pnm");
+        assert_int_equal(ours.channels, theirs.channels);
+        double most = 0, sum = 0;
+        uint32_t count = ours.channels * WIDTH * HEIGHT;
+        for (uint32_t k = 0; k < count; k++) {
+            double error = fabs((double)ours.samples[k] - (double)theirs.samples[k]) * 255;
+            most = fmax(most, error);
+            sum += error;
+        }
+        if (!(most <= 12 && sum / count <= 1))
+            fail_msg("pnmtojpeg %s: %g levels apart, %g on average", options[i], most, sum / count);
+        lr_image_free(&ours);
+        lr_image_free(&theirs);
+    }
+}
+
 static void test_netpbm_grey_and_bitmap(void **state)
 {
     (void)state;
@@ -165,6 +196,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_netpbm),
+        cmocka_unit_test(test_netpbm_jpeg),
         cmocka_unit_test(test_netpbm_grey_and_bitmap),
         cmocka_unit_test(test_netpbm_pfm),
         cmocka_unit_test(test_imagemagick),

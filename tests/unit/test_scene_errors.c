@@ -36,16 +36,16 @@ static void test_keys(void **state)
          "3:1: duplicate key \"objects\", first given on line 1"},
         {ONE "- sphre: {}\n", "3:3: unknown object \"sphre\"; did you mean \"sphere\"?"},
         {ONE "- torus: {}\n", "3:3: unknown object \"torus\", expected one of sphere, plane, box, "
-                              "disk, rectangle, cylinder, cone, triangle, group"},
+                              "disk, rectangle, cylinder, cone, triangle, mesh, group"},
         {"lights: [{pont: {}}]\n" ONE "- sphere: {}\n",
          "1:11: unknown light \"pont\"; did you mean \"point\"?"},
         {SPHERE("material: glas") "materials: {glass: {}}\n",
          "3:22: unknown material \"glas\", expected a name from materials; did you mean "
          "\"glass\"?"},
         {SPHERE("material: x"), "3:22: unknown material \"x\", expected a name from materials\n"},
-        {MATERIAL("color: {cheker: [0, 1]}"),
-         "1:25: color has no pattern, expected checker, stripes, gradient or rings; did you mean "
-         "\"checker\"?"},
+        {MATERIAL("color: {cheker: [0, 1]}"), "1:25: color has no pattern, expected checker, "
+                                              "stripes, gradient, rings or image; did you mean "
+                                              "\"checker\"?"},
         {MATERIAL("color: {checker: [0, 1], direction: [1, 0, 0]}"),
          "1:42: unknown key \"direction\" in checker"},
         {SPHERE("\"a\\tb\": 1"), "3:12: unknown key \"a\\x09b\" in sphere"},
@@ -287,7 +287,7 @@ static void test_excerpts(void **state)
     assert_true(
         reports("{camera: {},\n\t\"objects\": [\t{\"x\": 1}]}\n",
                 "s.yaml:2:16: unknown object \"x\", expected one of sphere, plane, box, disk, "
-                "rectangle, cylinder, cone, triangle, group\n"
+                "rectangle, cylinder, cone, triangle, mesh, group\n"
                 "    2 |     \"objects\": [    {\"x\": 1}]}\n"
                 "      |                      ^\n"));
     assert_true(reports(SPHERE("\"\xC3\xA9\xC3\xA9\": 1, radius: -1"),

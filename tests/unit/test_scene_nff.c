@@ -392,7 +392,7 @@ static void test_databases(void **state)
         fclose(file);
         lr_scene *scene;
         lr_error error = {0};
-        lr_status status = lr_scene_load(path, &scene, &report, &error);
+        lr_status status = lr_scene_load(path, NULL, &scene, &report, &error);
         if (status != LR_OK)
             fail_msg("%s: %s", error.message, report ? report : "");
         assert_int_equal(scene->light_count, rows[i].lights);

@@ -372,12 +372,12 @@ static void test_load(void **state)
     lr_scene *scene;
     char *report;
     lr_error error = {0};
-    lr_status status = lr_scene_load("/nonexistent/s.yaml", &scene, &report, &error);
+    lr_status status = lr_scene_load("/nonexistent/s.yaml", NULL, &scene, &report, &error);
     assert_int_equal(status, LR_ERROR_FILE);
     assert_null(scene);
     assert_null(report);
     status =
-        lr_scene_load(SOURCE_DIR "/tests/fuzz/corpus/scene/readme.yaml", &scene, &report, &error);
+        lr_scene_load(SOURCE_DIR "/tests/fuzz/corpus/scene/readme.yaml", NULL, &scene, &report, &error);
     assert_int_equal(status, LR_OK);
     assert_int_equal(scene->object_count, 2);
     lr_scene_destroy(scene);

@@ -44,7 +44,7 @@ static void compare_materials(const lr_material *a, const lr_material *b)
     SAME(color.kind);
     SAME(color.colors[0]);
     SAME(color.object_space);
-    if (a->color.kind != LR_PATTERN_NONE) {
+    if (a->color.kind != LR_PATTERN_NONE && a->color.kind != LR_PATTERN_IMAGE) {
         SAME(color.colors[1]);
         SAME(color.size);
         SAME(color.origin);
@@ -62,6 +62,9 @@ static void compare_materials(const lr_material *a, const lr_material *b)
     SAME(fresnel);
     SAME(absorption);
     SAME(priority);
+    SAME(alpha_cutoff);
+    SAME(one_sided);
+    SAME(color.texture);
 }
 
 static void compare_objects(const lr_object *a, const lr_object *b)
@@ -126,12 +129,26 @@ static void compare_cameras(const lr_camera *a, const lr_camera *b)
     SAME(fov_to_centers);
 }
 
+static void compare_textures(const lr_texture *a, const lr_texture *b)
+{
+    SAME(width);
+    SAME(height);
+    SAME(wrap_u);
+    SAME(wrap_v);
+    size_t texels = (size_t)a->width * a->height;
+    if (a->bytes)
+        assert_memory_equal(a->bytes, b->bytes, 4 * texels);
+    else
+        assert_memory_equal(a->floats, b->floats, 3 * sizeof(float) * texels);
+}
+
 static void compare(const lr_scene *a, const lr_scene *b)
 {
     SAME(camera_count);
     SAME(material_count);
     SAME(object_count);
     SAME(light_count);
+    SAME(texture_count);
     SAME(default_light);
     SAME(ambient);
     SAME(background[0]);
@@ -151,6 +168,8 @@ static void compare(const lr_scene *a, const lr_scene *b)
         compare_cameras(&a->cameras[i], &b->cameras[i]);
     for (uint32_t i = 0; i < a->material_count; i++)
         compare_materials(&a->materials[i], &b->materials[i]);
+    for (uint32_t i = 0; i < a->texture_count; i++)
+        compare_textures(&a->textures[i], &b->textures[i]);
     for (uint32_t i = 0; i < a->object_count; i++)
         compare_objects(&a->objects[i], &b->objects[i]);
     for (uint32_t i = 0; i < a->light_count; i++)
@@ -163,7 +182,7 @@ static void round_trip(const lr_scene *scene)
     lr_scene *again;
     char *report;
     lr_error error = {0};
-    if (lr_scene_load(path_of("scene.yaml"), &again, &report, &error) != LR_OK)
+    if (lr_scene_load(path_of("scene.yaml"), NULL, &again, &report, &error) != LR_OK)
         fail_msg("%s\n%s", error.message, report);
     compare(scene, again);
     lr_scene_destroy(again);
@@ -181,7 +200,7 @@ static void test_all_scenes(void **state)
         char path[1024], *report;
         lr_scene *scene;
         snprintf(path, sizeof path, SOURCE_DIR "/scenes/%s", entry->d_name);
-        assert_int_equal(lr_scene_load(path, &scene, &report, NULL), LR_OK);
+        assert_int_equal(lr_scene_load(path, NULL, &scene, &report, NULL), LR_OK);
         round_trip(scene);
         lr_scene_destroy(scene);
         count++;

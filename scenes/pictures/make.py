@@ -1,0 +1,76 @@
+# make.py: writes the pictures of scenes/textures.yaml beside itself, and that of the test scene cutout.
+import math
+import pathlib
+import struct
+import zlib
+
+here = pathlib.Path(__file__).resolve().parent
+
+
+def png(path, width, height, texel, channels=3):
+    """texel(x, y): the channels, 0 to 255."""
+    rows = b"".join(b"\0" + bytes(c for x in range(width) for c in texel(x, y)) for y in range(height))
+
+    def chunk(kind, data):
+        body = kind + data
+        return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
+
+    kind = {3: 2, 4: 6}[channels]
+    path.write_bytes(b"\x89PNG\r\n\x1a\n"
+                     + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, kind, 0, 0, 0))
+                     + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
+
+
+def hashed(*keys):
+    """A number 0 to 1 that looks random."""
+    value = zlib.crc32(repr(keys).encode())
+    return value / 2**32
+
+
+def crate(x, y):
+    size, plank = 96, 16
+    board, across = divmod(y, plank)
+    frame = min(x, y, size - 1 - x, size - 1 - y) < 9
+    if frame:
+        board, across = 9, min(x, y, size - 1 - x, size - 1 - y) + 4
+    if abs(x - y) < 7 and not frame:
+        board, across = 8, x - y + 8
+    along = x if board < 9 or 9 <= x < size - 9 else y
+    grain = math.sin(0.9 * across + 2 * math.sin(0.05 * along + board) + 7 * hashed("board", board))
+    shade = 0.78 + 0.08 * grain + 0.12 * hashed("tone", board)
+    seam = 0.45 if across in (0, plank - 1) or (frame and across == 12) else 1
+    nail = (x % 82 in (6, 7)) and (y % 82 in (6, 7))
+    if nail:
+        return 60, 58, 55
+    return tuple(int(min(255, c * shade * seam)) for c in (214, 160, 98))
+
+
+def tiles(x, y):
+    joint = x % 32 < 1 or y % 32 < 1
+    cell = (x // 32, y // 32)
+    base = (196, 190, 178) if sum(cell) & 1 else (142, 92, 72)
+    shade = 0.92 + 0.16 * hashed("tile", *cell)
+    return (92, 90, 86) if joint else tuple(int(min(255, c * shade)) for c in base)
+
+
+def leaf(x, y):
+    """A leaf on a stalk, alpha 0 around it, with its own green spread there so that no rim shows."""
+    u, v = (x + 0.5) / 64 * 2 - 1, 1 - (y + 0.5) / 64
+    inside = 0.12 < v < 0.98
+    width = 0.92 * math.sin(math.pi * (v - 0.12) / 0.86) ** 0.8 if inside else 0
+    width *= 1 - 0.12 * (math.sin(40 * v) > 0)
+    stalk = v <= 0.2 and abs(u) < 0.06
+    vein = abs(u) < 0.03 or abs((v - 0.5 * abs(u)) * 9 % 1 - 0.5) < 0.06
+    green = (150, 190, 70) if vein else (70, 140, 42)
+    return (*((116, 84, 48) if stalk else green), 255 if stalk or abs(u) < width else 0)
+
+
+def cutout(x, y):
+    """The test scene's: red everywhere, opaque at the left."""
+    return 255, 0, 0, 255 if x == 0 else 0
+
+
+png(here / "crate.png", 96, 96, crate)
+png(here / "tiles.png", 128, 128, tiles)
+png(here / "leaf.png", 64, 64, leaf, 4)
+png(here.parents[1] / "tests/images/scenes/cutout.png", 2, 1, cutout, 4)

@@ -1,0 +1,88 @@
+/* Textures: their records are the first rows, so that materials can name them, their texels the
+ * last. */
+#include <string.h>
+
+#include "render/pack.h"
+#include "scene/color.h"
+
+static lr_status no_memory(lr_error *error)
+{
+    return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's textures");
+}
+
+lr_status lr_pack_texture_records(const lr_scene *scene, lr_packed_scene *packed, lr_error *error)
+{
+    static const struct gpu_texture empty;
+    for (uint32_t i = 0; i < scene->texture_count; i++)
+        if (lr_pack_rows(packed, &empty, 1) == UINT32_MAX)
+            return no_memory(error);
+    return LR_OK;
+}
+
+/* The linear value of each byte, the same as of colours in a scene, and its share of 255. */
+static bool pack_curve(lr_packed_scene *packed)
+{
+    for (unsigned i = 0; i < 256; i++) {
+        vec4 row = {.x = (float)lr_srgb_to_linear(i), .y = (float)(i / 255.0)};
+        if (lr_pack_rows(packed, &row, 1) == UINT32_MAX)
+            return false;
+    }
+    return true;
+}
+
+static bool pack_bytes(const lr_texture *texture, lr_packed_scene *packed)
+{
+    size_t count = (size_t)texture->width * texture->height;
+    for (size_t i = 0; i < count; i += 4) {
+        uint32_t row[4] = {0};
+        for (size_t k = 0; k < 4 && i + k < count; k++) {
+            const uint8_t *texel = &texture->bytes[4 * (i + k)];
+            row[k] = texel[0] | (uint32_t)texel[1] << 8 | (uint32_t)texel[2] << 16 |
+                     (uint32_t)texel[3] << 24;
+        }
+        if (lr_pack_rows(packed, row, 1) == UINT32_MAX)
+            return false;
+    }
+    return true;
+}
+
+static bool pack_floats(const lr_texture *texture, lr_packed_scene *packed)
+{
+    size_t count = (size_t)texture->width * texture->height;
+    for (size_t i = 0; i < count; i++) {
+        const float *texel = &texture->floats[3 * i];
+        vec4 row = {texel[0], texel[1], texel[2], 1};
+        if (lr_pack_rows(packed, &row, 1) == UINT32_MAX)
+            return false;
+    }
+    return true;
+}
+
+lr_status lr_pack_textures(const lr_scene *scene, lr_packed_scene *packed, lr_error *error)
+{
+    static const uint32_t wraps[] = {
+        [LR_WRAP_REPEAT] = LR_GPU_WRAP_REPEAT,
+        [LR_WRAP_CLAMP] = LR_GPU_WRAP_CLAMP,
+        [LR_WRAP_MIRROR] = LR_GPU_WRAP_MIRROR,
+    };
+    if (scene->texture_count == 0)
+        return LR_OK;
+    uint32_t curve = packed->row_count;
+    if (!pack_curve(packed))
+        return no_memory(error);
+    for (uint32_t i = 0; i < scene->texture_count; i++) {
+        const lr_texture *texture = &scene->textures[i];
+        struct gpu_texture record = {
+            .texels = packed->row_count,
+            .size = texture->width | texture->height << 16,
+            .curve = curve,
+            .flags = wraps[texture->wrap_u] | wraps[texture->wrap_v] << 2 |
+                     (texture->floats ? LR_GPU_TEXTURE_FLOATS : 0),
+        };
+        bool fits = texture->floats ? pack_floats(texture, packed) : pack_bytes(texture, packed);
+        if (!fits)
+            return no_memory(error);
+        memcpy(&packed->rows[i], &record, sizeof record);
+    }
+    return LR_OK;
+}
