@@ -31,13 +31,28 @@ typedef struct lr_error {
 
 typedef struct lr_scene lr_scene;
 
-/* Reads and checks the scene file at path ("-" is standard input): the scene language, or NFF in a
- * file whose name ends in .nff. On LR_ERROR_SCENE, *report is the text of all errors,
- * `file:line:col: message` each with its source line and a caret; the caller frees it. Other
- * failures are described in error and leave *report NULL. */
-lr_status lr_scene_load(const char *path, lr_scene **scene, char **report, lr_error *error);
+/* How scene files are read. What others made may name any file and claim any size. */
+typedef struct lr_load_options {
+    bool allow_path;        /* files may name files outside of the scene's folder */
+    uint64_t max_triangles; /* of all meshes; 0: 100 million */
+    uint64_t max_memory;    /* bytes for files and meshes, about; 0: 8 GiB */
+    /* Called from time to time with what is being done and the fraction of it, 0 to 1; returning
+     * false stops with LR_ERROR_INTERRUPTED. */
+    bool (*progress)(void *user, const char *what, double fraction);
+    void *user;
+} lr_load_options;
 
-/* The same from text in memory; name stands in the messages for the file. */
+/* Reads and checks the scene file at path ("-" is standard input): glTF, OBJ, PLY, STL and NFF by
+ * their endings, everything else as the scene language. options may be NULL. On LR_ERROR_SCENE,
+ * *report is the text of all errors, `file:line:col: message` each with its source line and a
+ * caret; the caller frees it. Other failures, and what is wrong with the files of other programs,
+ * are described in error and leave *report NULL. One file of another program at a time: the library
+ * that reads them has one place for its messages. */
+lr_status lr_scene_load(const char *path, const lr_load_options *options, lr_scene **scene,
+                        char **report, lr_error *error);
+
+/* The same from a text of the scene language in memory; name stands in the messages for the file,
+ * and files that the text names are looked for in its folder. */
 lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_scene **scene,
                          char **report, lr_error *error);
 void lr_scene_destroy(lr_scene *scene);
@@ -45,10 +60,33 @@ void lr_scene_destroy(lr_scene *scene);
 typedef struct lr_scene_info {
     uint32_t objects, lights, materials, cameras;
     float exposure;  /* image.exposure, in stops */
-    char sha256[65]; /* of the text, as 64 hexadecimal digits */
+    char sha256[65]; /* of the file, as 64 hexadecimal digits */
+    uint32_t meshes;
+    uint64_t triangles;       /* of the meshes, each counted once */
+    const char *const *notes; /* what was left out of other programs' files, and why; the scene's */
+    uint32_t note_count;
 } lr_scene_info;
 
 void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info);
+
+/* The languages that scenes are written in: ours, and those of POV-Ray 3.7 and Tachyon. */
+typedef enum lr_scene_format {
+    LR_SCENE_YAML,
+    LR_SCENE_POVRAY,
+    LR_SCENE_TACHYON,
+} lr_scene_format;
+
+/* The language that a path's ending names (.yaml .yml, .pov, .dat .tac), false when it names none.
+ */
+bool lr_scene_format_from_path(const char *path, lr_scene_format *format);
+
+/* Writes the scene to path. Meshes and pictures of LR_SCENE_YAML go into files beside it: PATH
+ * without its ending and with -1.ply, -2.ply, -1.png, ... behind; they replace files of these names
+ * only if path is replaced as well. What the language cannot say is told in *notes, one line each,
+ * which the caller frees; NULL: nothing. Files are replaced only after their successors are
+ * complete. */
+lr_status lr_scene_write(const lr_scene *scene, const char *path, lr_scene_format format,
+                         char **notes, lr_error *error);
 
 /* The JSON Schema of the scene language; the caller frees it. NULL when memory is out. */
 char *lr_scene_schema(void);

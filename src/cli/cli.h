@@ -6,8 +6,6 @@
 #include "cli/options.h"
 #include "lavaray.h"
 
-struct progress;
-
 typedef enum exit_code {
     EXIT_FINE = 0,
     EXIT_DIFFERENT = 1,    /* pictures, or a self-test's hash, are not as expected */
@@ -31,7 +29,7 @@ typedef struct command {
 } command;
 
 extern const command command_render, command_devices, command_doctor, command_validate,
-    command_schema, command_compare, command_test;
+    command_schema, command_compare, command_test, command_convert;
 
 /* One line on stderr, with "lavaray: " in front. */
 void print_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
@@ -49,10 +47,6 @@ bool stream_has_color(int fd);
 
 /* Prints what failed and returns the exit code that belongs to it. */
 int report_failure(const lr_error *error);
-
-/* Loads a scene or prints all that is wrong with it, after clearing the progress bar (which may be
- * NULL); returns an exit_code. */
-int load_scene(const char *path, lr_scene **scene, struct progress *bar);
 
 /* Whether LAVARAY_VALIDATION asks for the validation layer. */
 bool validation_wanted(void);

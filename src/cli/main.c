@@ -13,8 +13,8 @@
 #include <unistd.h>
 
 static const command *const commands[] = {&command_render,   &command_devices, &command_doctor,
-                                          &command_validate, &command_schema,  &command_compare,
-                                          &command_test};
+                                          &command_validate, &command_convert, &command_schema,
+                                          &command_compare,  &command_test};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 static bool is_terminal(int fd)
@@ -91,30 +91,6 @@ int report_failure(const lr_error *error)
         break;
     }
     return EXIT_DEVICE;
-}
-
-int load_scene(const char *path, lr_scene **scene, struct progress *bar)
-{
-    lr_error error = {0};
-    char *report = NULL;
-    lr_status status = lr_scene_load(path, scene, &report, &error);
-    if (status == LR_OK) {
-        return EXIT_FINE;
-    }
-    int code = EXIT_SCENE;
-    progress_clear(bar);
-    if (report) {
-        size_t length = strlen(report);
-        fputs(report, stderr);
-        if (length == 0 || report[length - 1] != '\n') {
-            fputc('\n', stderr);
-        }
-    } else {
-        error.status = status;
-        code = report_failure(&error);
-    }
-    free(report);
-    return code;
 }
 
 bool validation_wanted(void)

@@ -141,6 +141,23 @@ bool parse_rectangle(const char *text, int64_t max, option_rectangle *rectangle)
     return good;
 }
 
+/* "4096", "512M", "1.5G": bytes, in units of 1024. */
+static bool parse_bytes(const char *text, int64_t min, int64_t *bytes)
+{
+    static const char units[] = "KMGT";
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || strspn(text, "0123456789.") != (size_t)(end - text))
+        return false;
+    const char *unit = *end ? strchr(units, *end & ~0x20) : NULL;
+    if (*end && (!unit || end[1] != '\0'))
+        return false;
+    for (long i = unit ? unit - units : -1; i >= 0; i--)
+        value *= 1024;
+    *bytes = value <= 9e18 ? (int64_t)value : 0;
+    return *bytes >= min;
+}
+
 static parse_result store_value(const command *self, const option *o, const char *text,
                                 void *values)
 {
@@ -180,6 +197,11 @@ static parse_result store_value(const command *self, const option *o, const char
         snprintf(expected, sizeof expected, "a whole number from %lld to %lld", min, max);
         break;
     }
+    case OPTION_BYTES:
+        good = parse_bytes(text, o->min, (int64_t *)target);
+        snprintf(expected, sizeof expected, "a size of at least %lld bytes, such as 512M or 8G",
+                 min);
+        break;
     case OPTION_REAL: {
         char *end;
         double value = strtod(text, &end);

@@ -17,6 +17,7 @@ typedef enum option_kind {
     OPTION_SIZE,      /* option_size, each within min..max: 640x480 */
     OPTION_RECTANGLE, /* option_rectangle, each within min..max: 10,20,64,48 */
     OPTION_CHOICE,    /* const char *, one of choices */
+    OPTION_BYTES,     /* int64_t, at least min: 512M, 1.5G, 4096 */
     OPTION_REPEATED,  /* option_texts: a text, any number of times up to OPTION_REPEATED_MAX */
 } option_kind;
 

@@ -1,4 +1,5 @@
 #include "cli/cli.h"
+#include "cli/load.h"
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
@@ -17,6 +18,7 @@ typedef struct values {
     double exposure;                      /* NaN: not given */
     option_rectangle crop;
     int64_t tile, chunk;
+    load_values load;
     bool half, storage_loads, quiet, verbose;
 } values;
 
@@ -123,6 +125,7 @@ static const option options[] = {
      AT(stats),
      .value = "FILE",
      .help = "write statistics as JSON; \"-\" is standard output"},
+    LOAD_OPTIONS(values),
     {.name = "quiet",
      .letter = 'q',
      .kind = OPTION_FLAG,
@@ -354,7 +357,7 @@ static int run(const command *self, int argc, char **argv)
     render_record record = {.scene = path, .output = v.output, .camera = v.camera};
     lr_scene_info scene_info;
     lr_error error = {0};
-    code = load_scene(path, &scene, &p);
+    code = load_scene(path, &v.load, v.quiet, &scene, &p);
     record.parse_seconds = seconds_now() - start;
     if (code != EXIT_FINE) {
         goto done;
@@ -397,9 +400,10 @@ const command command_render = {
     .name = "render",
     .operands = "SCENE -o FILE",
     .summary = "render a scene to a picture",
-    .details = "Renders SCENE (YAML or JSON; \"-\" is standard input) and writes the picture. The\n"
-               "picture depends on the scene and the flags alone, not on the device. Nothing is\n"
-               "written when the render fails or is interrupted.",
+    .details = "Renders SCENE and writes the picture. SCENE is YAML or JSON (\"-\" is standard\n"
+               "input), or a .gltf, .glb, .obj, .ply, .stl or .nff file. The picture depends on\n"
+               "the scene and the flags alone, not on the device. Nothing is written when the\n"
+               "render fails or is interrupted.",
     .examples = "  lavaray render scenes/showcase.yaml -o showcase.png\n"
                 "  lavaray render room.yaml -o room.exr --size 1920x1080 --spp 64 --device gpu\n"
                 "  lavaray render room.yaml -o - | pnmtopng > room.png",

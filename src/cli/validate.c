@@ -1,14 +1,16 @@
-#include "cli/cli.h"
+#include "cli/load.h"
 
 #include <limits.h>
 #include <stddef.h>
 #include <stdio.h>
 
 typedef struct values {
+    load_values load;
     bool quiet;
 } values;
 
 static const option options[] = {
+    LOAD_OPTIONS(values),
     {.name = "quiet",
      .letter = 'q',
      .kind = OPTION_FLAG,
@@ -32,15 +34,21 @@ static int run(const command *self, int argc, char **argv)
     int code = EXIT_FINE;
     for (int i = 0; i < operands; i++) {
         lr_scene *scene = NULL;
-        int result = load_scene(argv[i], &scene, NULL);
+        int result = load_scene(argv[i], &v.load, v.quiet, &scene, NULL);
         code = result > code ? result : code;
         if (result == EXIT_FINE && !v.quiet) {
             lr_scene_info info;
             lr_scene_get_info(scene, &info);
-            printf("%s: ok, %u object%s, %u light%s, %u material%s, %u camera%s\n", argv[i],
+            printf("%s: ok, %u object%s, %u light%s, %u material%s, %u camera%s", argv[i],
                    (unsigned)info.objects, plural(info.objects), (unsigned)info.lights,
                    plural(info.lights), (unsigned)info.materials, plural(info.materials),
                    (unsigned)info.cameras, plural(info.cameras));
+            if (info.meshes > 0) {
+                printf(", %u mesh%s, %llu triangle%s", (unsigned)info.meshes,
+                       info.meshes == 1 ? "" : "es", (unsigned long long)info.triangles,
+                       info.triangles == 1 ? "" : "s");
+            }
+            putchar('\n');
         }
         lr_scene_destroy(scene);
     }

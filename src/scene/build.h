@@ -6,11 +6,13 @@
 #include "scene/scene.h"
 
 /* Makes a scene of a text: `read` fills it in and reports what is wrong, to which the text, its
- * name and its language are known. Returns as lr_scene_parse does. */
+ * name and its language are known; options, which may be NULL, are passed on. Returns as
+ * lr_scene_parse does. */
 lr_status lr_scene_from_text(const char *text, size_t length, const char *name,
-                             const lr_language *language,
-                             void (*read)(lr_scene *scene, lr_report *report), lr_scene **scene,
-                             char **report, lr_error *error);
+                             const lr_language *language, const lr_load_options *options,
+                             void (*read)(lr_scene *scene, lr_report *report,
+                                          const lr_load_options *options),
+                             lr_scene **scene, char **report, lr_error *error);
 
 /* A scene that grows, with the room that its arrays have. */
 typedef struct lr_scene_builder {

@@ -31,6 +31,9 @@ static const lr_field camera_fields[] = {
      .derived = "the scene's `up`", .doc = "The direction that is up in the picture."},
     {"fov", LR_FIELD_NUMBER, LR_ABOVE | LR_BELOW, RANGE(0, 180), DEFAULT(40),
      MEMBER(lr_camera, fov), .doc = "Vertical field of view in degrees."},
+    {"fov_to_centers", LR_FIELD_BOOLEAN, 0, DEFAULT(0), MEMBER(lr_camera, fov_to_centers),
+     .doc = "The field of view ends in the middle of the outer rows of pixels, as in NFF, not at "
+            "their edges."},
 };
 const lr_record lr_camera_record =
     RECORD("camera", "Where the picture is taken from.", camera_fields, 0);
@@ -238,7 +241,7 @@ const uint32_t lr_light_record_count = COUNT(lr_light_records);
 /* ---- Objects ------------------------------------------------------------------------------- */
 
 #define OBJECT(member) MEMBER(lr_object_draft, object.member)
-/* Read into the draft, applied as translate * rotate * scale. */
+/* Read into the draft, applied as translate * rotate * scale, or the matrix alone. */
 #define TRANSFORM                                                                                  \
     {"scale",                                                                                      \
      LR_FIELD_SCALE,                                                                               \
@@ -254,9 +257,17 @@ const uint32_t lr_light_record_count = COUNT(lr_light_records);
          DEFAULT(0, 0, 0),                                                                         \
          MEMBER(lr_object_draft, rotate),                                                          \
          .doc = "Degrees about x, then y, then z, or {axis, angle}; about the origin; second."},   \
+        {"translate",                                                                              \
+         LR_FIELD_VECTOR,                                                                          \
+         0,                                                                                        \
+         COORDINATE,                                                                               \
+         DEFAULT(0, 0, 0),                                                                         \
+         MEMBER(lr_object_draft, translate),                                                       \
+         .doc = "Moves it; applied last."},                                                        \
     {                                                                                              \
-        "translate", LR_FIELD_VECTOR, 0, COORDINATE, DEFAULT(0, 0, 0),                             \
-            MEMBER(lr_object_draft, translate), .doc = "Moves it; applied last."                   \
+        "matrix", LR_FIELD_MATRIX, LR_DERIVED, COORDINATE, MEMBER(lr_object_draft, matrix),        \
+            .derived = "from the other three",                                                     \
+            .doc = "Three rows of four numbers: any affine map, in place of the other three."      \
     }
 #define PLACEMENT                                                                                  \
     {"material", LR_FIELD_MATERIAL, LR_DERIVED, .derived = "the group's, else grey",               \
@@ -329,6 +340,16 @@ static const lr_field triangle_fields[] = {
     POINT("c", triangle.c, "The last."),
     PLACEMENT,
 };
+static const lr_field mesh_fields[] = {
+    {"file", LR_FIELD_TEXT, LR_REQUIRED | LR_DERIVED, MEMBER(lr_object_draft, file),
+     .derived = "the path of a model, such as spot.obj",
+     .doc = "A glTF, GLB, OBJ, PLY or STL file, as seen from the scene's folder."},
+    {"material", LR_FIELD_MATERIAL, LR_DERIVED, .derived = "the group's, else the file's own",
+     .doc = "For all that is in the file: the name of one of `materials`, or a material written "
+            "here."},
+    {"shadow", LR_FIELD_BOOLEAN, 0, DEFAULT(1), OBJECT(shadow), .doc = "Whether it casts shadows."},
+    TRANSFORM,
+};
 const lr_record lr_object_records[] = {
     RECORD("sphere", "A ball.", sphere_fields, LR_SPHERE),
     RECORD("plane", "An endless plane.", plane_fields, LR_PLANE),
@@ -338,6 +359,7 @@ const lr_record lr_object_records[] = {
     RECORD("cylinder", "A round bar between two points.", cylinder_fields, LR_CYLINDER),
     RECORD("cone", "A cone, or a cut-off one with `top_radius`.", cone_fields, LR_CONE),
     RECORD("triangle", "A flat triangle.", triangle_fields, LR_TRIANGLE),
+    RECORD("mesh", "The model in a file of another program.", mesh_fields, LR_MESH),
 };
 const uint32_t lr_object_record_count = COUNT(lr_object_records);
 

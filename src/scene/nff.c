@@ -455,8 +455,9 @@ static void complete(nff_reader *reader)
                       "all objects of the file have no size, expected one that can be seen");
 }
 
-static void read_text(lr_scene *scene, lr_report *report)
+static void read_text(lr_scene *scene, lr_report *report, const lr_load_options *options)
 {
+    (void)options; /* NFF names no files */
     nff_reader reader = {
         .text = {.report = report},
         .builder = {.scene = scene},
@@ -494,5 +495,6 @@ static const lr_language nff_language = {
 lr_status lr_nff_read(const char *text, size_t length, const char *name, lr_scene **scene,
                       char **report, lr_error *error)
 {
-    return lr_scene_from_text(text, length, name, &nff_language, read_text, scene, report, error);
+    return lr_scene_from_text(text, length, name, &nff_language, NULL, read_text, scene, report,
+                              error);
 }

@@ -3,6 +3,7 @@
 #ifndef LR_SCENE_READ_H
 #define LR_SCENE_READ_H
 
+#include "scene/bounds.h"
 #include "scene/build.h"
 #include "scene/keys.h"
 #include "scene/names.h"
@@ -10,13 +11,27 @@
 
 #include <locale.h>
 
+/* A file of meshes that the text names, read once: its objects, which stand in no scene yet. */
+typedef struct lr_mesh_file {
+    char *name;
+    lr_object *objects;
+    lr_bounds *bounds; /* of each object's mesh, in its own space */
+    uint32_t count;
+} lr_mesh_file;
+
+typedef struct lr_mesh_files {
+    lr_mesh_file *items;
+    uint32_t count, capacity;
+} lr_mesh_files;
+
 typedef struct lr_reader {
     lr_report *report;
     lr_scene *scene;
     lr_scene_builder builder;  /* of that scene */
+    lr_load_options options;   /* for the files that the text names */
+    lr_mesh_files files;       /* read so far */
     locale_t locale;           /* "C", whatever the program chose */
     lr_names materials;        /* names to indices of scene->materials */
-    bool allow_path;           /* files may lie outside of the scene's folder */
     uint32_t default_material; /* UINT32_MAX until an object needs it */
     uint32_t nesting;          /* of groups */
     bool full;                 /* too many objects or materials: reported, reading has stopped */
@@ -76,6 +91,10 @@ uint32_t lr_default_material(lr_reader *reader);
 
 void lr_read_lights(lr_reader *reader, const lr_node *node);
 void lr_read_objects(lr_reader *reader, const lr_node *node);
+
+/* The objects of the mesh file that `file` names; NULL after reporting. */
+const lr_mesh_file *lr_read_mesh_file(lr_reader *reader, const lr_node *file);
+void lr_mesh_files_free(lr_mesh_files *files);
 
 /* Checks of shapes, at the best node; false after reporting. */
 bool lr_check_shape(lr_reader *reader, const lr_object *object, const lr_record *record,

@@ -1,10 +1,8 @@
 /* Objects and groups, flattened: each object carries the transforms and the material that the
  * groups around it give it. */
+#include "scene/bounds.h"
 #include "scene/read.h"
 
-#include "base/memory.h"
-
-#include <math.h>
 #include <string.h>
 
 /* What a group hands down. */
@@ -22,22 +20,27 @@ static bool compose(lr_reader *reader, const lr_object_draft *draft, const lr_re
                     const lr_given *given, const lr_node *at, const surroundings *around,
                     lr_transform *to_world, bool *transformed)
 {
+    const lr_node *matrix = lr_given_value(given, record, "matrix");
     bool moved = lr_given_value(given, record, "scale") ||
                  lr_given_value(given, record, "rotate") ||
                  lr_given_value(given, record, "translate");
-    *transformed = around->transformed || moved;
-    if (!moved) {
+    *transformed = around->transformed || moved || matrix;
+    if (!moved && !matrix) {
         *to_world = around->to_world;
         return true;
     }
+    if (moved && matrix) {
+        lr_report_add(reader->report, matrix->offset,
+                      "the %s has a matrix and also scale, rotate or translate, expected only one "
+                      "way",
+                      record->name);
+        return false;
+    }
     lr_transform own = lr_transform_multiply(draft->rotate, lr_transform_scale(draft->scale));
     own = lr_transform_multiply(lr_transform_translate(draft->translate), own);
+    own = matrix ? draft->matrix : own;
     *to_world = lr_transform_multiply(around->to_world, own);
-    lr_transform inverse;
-    bool usable = lr_transform_inverse(to_world, &inverse);
-    for (int i = 0; i < 3 && usable; i++)
-        for (int j = 0; j < 4 && usable; j++)
-            usable = fabs(to_world->m[i][j]) <= LR_COORDINATE_MAX && fabs(inverse.m[i][j]) <= 1e36;
+    bool usable = lr_transform_usable(to_world);
     if (!usable)
         lr_report_add(reader->report, at->offset,
                       "the transforms of this %s are too extreme together, expected factors and "
@@ -92,6 +95,32 @@ static void add_object(lr_reader *reader, const lr_object *object, const lr_node
     *added = *object;
 }
 
+/* One object for each of the file's, in the place and, if there is one, with the material that the
+ * text gives. */
+static void place_mesh(lr_reader *reader, const lr_object *object, const lr_mesh_file *file,
+                       const lr_node *at)
+{
+    for (uint32_t i = 0; i < file->count && !reader->full; i++) {
+        lr_object placed = file->objects[i];
+        placed.line = object->line;
+        placed.shadow = object->shadow;
+        if (object->material != UINT32_MAX)
+            placed.material = object->material;
+        if (object->transformed) {
+            placed.to_world = lr_transform_multiply(object->to_world, placed.to_world);
+            placed.transformed = true;
+        }
+        lr_bounds bounds = lr_bounds_transform(&file->bounds[i], &placed.to_world);
+        if (!lr_transform_usable(&placed.to_world) || !lr_bounds_usable(&bounds)) {
+            lr_report_add(reader->report, at->offset,
+                          "with its transforms the model reaches beyond 1e12 metres or is "
+                          "flattened, expected it nearer");
+            return;
+        }
+        add_object(reader, &placed, at);
+    }
+}
+
 static void read_object(lr_reader *reader, const lr_record *record, const lr_node *key,
                         const lr_node *value, const surroundings *around)
 {
@@ -103,7 +132,7 @@ static void read_object(lr_reader *reader, const lr_record *record, const lr_nod
     object->line = key->line;
     const lr_node *material = lr_given_value(&given, record, "material");
     object->material = material ? lr_read_material_use(reader, material) : around->material;
-    if (!material && object->material == UINT32_MAX)
+    if (!material && object->material == UINT32_MAX && object->kind != LR_MESH)
         object->material = lr_default_material(reader);
     if (object->kind == LR_CYLINDER)
         object->cone.radius_to = object->cone.radius_from;
@@ -113,7 +142,13 @@ static void read_object(lr_reader *reader, const lr_record *record, const lr_nod
                  &object->transformed) ||
         !lr_check_extent(reader, object, key))
         return;
-    add_object(reader, object, key);
+    if (object->kind != LR_MESH) {
+        add_object(reader, object, key);
+        return;
+    }
+    const lr_mesh_file *file = lr_read_mesh_file(reader, lr_given_value(&given, record, "file"));
+    if (file)
+        place_mesh(reader, object, file, key);
 }
 
 static void read_list(lr_reader *reader, const lr_node *node, const surroundings *around)

@@ -17,7 +17,7 @@ bool lr_report_has_room(const lr_report *report)
 
 bool lr_report_failed(const lr_report *report)
 {
-    return report->count > 0 || report->no_memory;
+    return report->count > 0 || report->no_memory || report->interrupted;
 }
 
 void lr_report_add(lr_report *report, size_t offset, const char *format, ...)

@@ -30,7 +30,8 @@ typedef struct lr_report {
     lr_problem problems[LR_REPORT_MAX];
     uint32_t count;
     uint64_t dropped;
-    bool no_memory; /* a message or another part of the reader could not be allocated */
+    bool no_memory;   /* a message or another part of the reader could not be allocated */
+    bool interrupted; /* the progress callback asked to stop */
 } lr_report;
 
 /* Adds an error at a byte offset. The same message at the same place counts once: a node that is

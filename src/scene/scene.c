@@ -1,11 +1,11 @@
 /* A scene from text: the top level, and the functions of the library. */
+#include "scene/load.h"
 #include "scene/read.h"
 
-#include "base/file.h"
 #include "base/hash.h"
+#include "base/status.h"
 #include "base/memory.h"
 #include "scene/build.h"
-#include "scene/nff.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -197,7 +197,7 @@ static const lr_language scene_language = {
 };
 
 /* Reads the report's text into the scene; what is wrong goes to the report. */
-static void read_text(lr_scene *scene, lr_report *report)
+static void read_text(lr_scene *scene, lr_report *report, const lr_load_options *options)
 {
     if (!lr_text_check(report))
         return;
@@ -205,6 +205,8 @@ static void read_text(lr_scene *scene, lr_report *report)
     lr_tree_read(&tree, report);
     lr_reader reader = {
         .report = report, .scene = scene, .builder.scene = scene, .default_material = UINT32_MAX};
+    if (options)
+        reader.options = *options;
     reader.locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     if (!reader.locale)
         report->no_memory = true;
@@ -212,14 +214,16 @@ static void read_text(lr_scene *scene, lr_report *report)
         lr_read_scene(&reader, tree.root);
     if (reader.locale)
         freelocale(reader.locale);
+    lr_mesh_files_free(&reader.files);
     lr_names_free(&reader.materials);
     lr_tree_free(&tree);
 }
 
 lr_status lr_scene_from_text(const char *text, size_t length, const char *name,
-                             const lr_language *language,
-                             void (*read)(lr_scene *scene, lr_report *report), lr_scene **scene,
-                             char **report, lr_error *error)
+                             const lr_language *language, const lr_load_options *options,
+                             void (*read)(lr_scene *scene, lr_report *report,
+                                          const lr_load_options *options),
+                             lr_scene **scene, char **report, lr_error *error)
 {
     *scene = NULL;
     *report = NULL;
@@ -236,10 +240,12 @@ lr_status lr_scene_from_text(const char *text, size_t length, const char *name,
     problems->name = name;
     problems->text = text;
     problems->length = length;
-    read(made, problems);
+    read(made, problems, options);
     if (problems->no_memory)
         goto no_memory;
-    if (problems->count > 0) {
+    if (problems->interrupted) {
+        status = lr_fail(error, LR_ERROR_INTERRUPTED, "%s: interrupted", name);
+    } else if (problems->count > 0) {
         *report = lr_report_text(problems);
         if (!*report)
             goto no_memory;
@@ -261,25 +267,16 @@ done:
     return status;
 }
 
+lr_status lr_scene_parse_with(const char *text, size_t length, const char *name,
+                              const lr_load_options *options, lr_scene **scene, char **report,
+                              lr_error *error)
+{
+    return lr_scene_from_text(text, length, name, &scene_language, options, read_text, scene,
+                              report, error);
+}
+
 lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_scene **scene,
                          char **report, lr_error *error)
 {
-    return lr_scene_from_text(text, length, name, &scene_language, read_text, scene, report, error);
-}
-
-lr_status lr_scene_load(const char *path, lr_scene **scene, char **report, lr_error *error)
-{
-    char *text;
-    size_t length;
-    *scene = NULL;
-    *report = NULL;
-    bool nff = lr_nff_is_path(path);
-    lr_status status =
-        lr_file_read(path, nff ? LR_NFF_TEXT_MAX : LR_TEXT_MAX, &text, &length, error);
-    if (status != LR_OK)
-        return status;
-    const char *name = strcmp(path, "-") == 0 ? "<stdin>" : path;
-    status = (nff ? lr_nff_read : lr_scene_parse)(text, length, name, scene, report, error);
-    free(text);
-    return status;
+    return lr_scene_parse_with(text, length, name, NULL, scene, report, error);
 }

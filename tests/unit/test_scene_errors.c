@@ -27,7 +27,7 @@ static void test_keys(void **state)
         {SPHERE("Radius: 1"), "3:12: unknown key \"Radius\" in sphere; did you mean \"radius\"?"},
         {SPHERE("bananas: 1"),
          "3:12: unknown key \"bananas\" in sphere, expected one of center, radius, material, "
-         "shadow, scale, rotate, translate"},
+         "shadow, scale, rotate, translate, matrix"},
         {"colour: 1\n" SPHERE(""), "1:1: unknown key \"colour\" in the scene, expected one of"},
         {"bakground: 1\n" SPHERE(""), "1:1: unknown key \"bakground\" in the scene; did you mean "
                                       "\"background\"?"},
@@ -36,7 +36,7 @@ static void test_keys(void **state)
          "3:1: duplicate key \"objects\", first given on line 1"},
         {ONE "- sphre: {}\n", "3:3: unknown object \"sphre\"; did you mean \"sphere\"?"},
         {ONE "- torus: {}\n", "3:3: unknown object \"torus\", expected one of sphere, plane, box, "
-                              "disk, rectangle, cylinder, cone, triangle, group"},
+                              "disk, rectangle, cylinder, cone, triangle, mesh, group"},
         {"lights: [{pont: {}}]\n" ONE "- sphere: {}\n",
          "1:11: unknown light \"pont\"; did you mean \"point\"?"},
         {SPHERE("material: glas") "materials: {glass: {}}\n",
@@ -137,6 +137,16 @@ static void test_values(void **state)
         {SPHERE("scale: 0"), "3:19: scale has a factor of 0"},
         {SPHERE("scale: [1, 0, 1]"), "3:19: scale has a factor of 0"},
         {SPHERE("scale: red"), "3:19: scale is red, expected a number"},
+        {SPHERE("matrix: [[1, 0, 0, 0], [0, 1, 0, 0]]"),
+         "3:20: matrix is a list of 2, expected three rows of four numbers"},
+        {SPHERE("matrix: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1]]"),
+         "3:20: matrix is a list of 3, expected three rows of four numbers"},
+        {SPHERE("matrix: [[1, 0, 0, 0], [0, 1, 0, x], [0, 0, 1, 0]]"),
+         "number 4 of row 2 of matrix is x, expected a number from -1e12 to 1e12"},
+        {SPHERE("matrix: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 1, 0, 0]]"),
+         "the transforms of this sphere are too extreme together"},
+        {SPHERE("translate: [0, 0, 1], matrix: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]"),
+         "the sphere has a matrix and also scale, rotate or translate, expected only one way"},
         {SPHERE("rotate: 90"), "3:20: rotate is 90, expected three angles [x, y, z] or {axis: "
                                "[x, y, z], angle: degrees}"},
         {"camera: {fov: 180}\nobjects: [{sphere: {}}]\n",
@@ -277,7 +287,7 @@ static void test_excerpts(void **state)
     assert_true(
         reports("{camera: {},\n\t\"objects\": [\t{\"x\": 1}]}\n",
                 "s.yaml:2:16: unknown object \"x\", expected one of sphere, plane, box, disk, "
-                "rectangle, cylinder, cone, triangle, group\n"
+                "rectangle, cylinder, cone, triangle, mesh, group\n"
                 "    2 |     \"objects\": [    {\"x\": 1}]}\n"
                 "      |                      ^\n"));
     assert_true(reports(SPHERE("\"\xC3\xA9\xC3\xA9\": 1, radius: -1"),

@@ -20,7 +20,7 @@ static char *load(const char *materials, lr_scene **scene)
     save("scene.yaml", text, strlen(text));
     snprintf(path, sizeof path, "%s/scene.yaml", folder);
     lr_error error = {0};
-    lr_status status = lr_scene_load(path, scene, &report, &error);
+    lr_status status = lr_scene_load(path, NULL, scene, &report, &error);
     assert_int_equal(status, report ? LR_ERROR_SCENE : LR_OK);
     return report;
 }

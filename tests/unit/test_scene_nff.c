@@ -234,7 +234,7 @@ static void test_numbers(void **state)
     };
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         char text[1024];
-        double expected = strtod(numbers[i], NULL), scale = fabs(expected) > 1e12 ? 0 : 1;
+        double expected = strtod(numbers[i], NULL) + 0.0, scale = fabs(expected) > 1e12 ? 0 : 1;
         snprintf(text, sizeof text, VIEW FILL "s %s 0 0 1\n", numbers[i]);
         if (scale == 0)
             continue;
@@ -392,7 +392,7 @@ static void test_databases(void **state)
         fclose(file);
         lr_scene *scene;
         lr_error error = {0};
-        lr_status status = lr_scene_load(path, &scene, &report, &error);
+        lr_status status = lr_scene_load(path, NULL, &scene, &report, &error);
         if (status != LR_OK)
             fail_msg("%s: %s", error.message, report ? report : "");
         assert_int_equal(scene->light_count, rows[i].lights);

@@ -1,0 +1,261 @@
+/* Materials of other programs as those of the classic shading. The rules, with their reasons, are
+ * in docs/import.md. */
+#include "scene/import_internal.h"
+
+#include <assimp/GltfMaterial.h>
+#include <assimp/ObjMaterial.h>
+#include <assimp/material.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/exact.h"
+#include "base/memory.h"
+
+#define SHININESS_MAX 1e6
+
+static double clamp(double value, double low, double high)
+{
+    return value >= low ? fmin(value, high) : low; /* NaN: low */
+}
+
+static lr_color grey(double value)
+{
+    return (lr_color){value, value, value};
+}
+
+static double greatest(lr_color c)
+{
+    return fmax(c.x, fmax(c.y, c.z));
+}
+
+static lr_color mix(lr_color a, lr_color b, double share_of_b)
+{
+    return lr_vec3_add(lr_vec3_scale(a, 1 - share_of_b), lr_vec3_scale(b, share_of_b));
+}
+
+static void set_color(lr_material *material, lr_color color)
+{
+    material->color.colors[0] = material->color.colors[1] = color;
+}
+
+/* ---- glTF: metal and roughness ------------------------------------------------------------- */
+
+/* object[key] as a colour within 0..limit. */
+static lr_color gltf_color(const json_t *object, const char *key, double fallback, double limit)
+{
+    const json_t *list = lr_gltf_member(object, key);
+    double c[3] = {fallback, fallback, fallback};
+    for (size_t i = 0; json_is_array(list) && i < 3 && i < json_array_size(list); i++)
+        if (json_is_number(json_array_get(list, i)))
+            c[i] = clamp(json_number_value(json_array_get(list, i)), 0, limit);
+    return (lr_color){c[0], c[1], c[2]};
+}
+
+/* What goes through: thin without KHR_materials_volume, which bends nothing. */
+static void set_transmission(const json_t *json, lr_color base, double share, lr_material *material)
+{
+    const json_t *volume = lr_gltf_extension(json, "KHR_materials_volume");
+    bool thick = lr_gltf_number(volume, "thicknessFactor", 0) > 0;
+    double distance = lr_gltf_number(volume, "attenuationDistance", 0);
+    lr_color left = gltf_color(volume, "attenuationColor", 1, 1);
+    material->transmit = lr_vec3_scale(base, share);
+    material->fresnel = thick;
+    /* From inside, a one-sided surface would not be there. */
+    material->one_sided = false;
+    if (!thick) {
+        material->ior = 1;
+        return;
+    }
+    if (distance > 0 && distance <= LR_COORDINATE_MAX) {
+        double *out = &material->absorption.x;
+        const double *c = &left.x;
+        for (int i = 0; i < 3; i++) /* exp(-absorption distance) = c, with ln 2 = 0.693... */
+            out[i] =
+                clamp(-lr_log2(fmax(c[i], 1e-6)) * 0.69314718055994531 / distance, 0, LR_COLOR_MAX);
+    }
+}
+
+static lr_status gltf_material(lr_import *import, const json_t *json, lr_material *material)
+{
+    const json_t *pbr = lr_gltf_member(json, "pbrMetallicRoughness");
+    lr_color base = gltf_color(pbr, "baseColorFactor", 1, 1);
+    const json_t *alpha_item = json_array_get(lr_gltf_member(pbr, "baseColorFactor"), 3);
+    double alpha = json_is_number(alpha_item) ? clamp(json_number_value(alpha_item), 0, 1) : 1;
+    double metallic = clamp(lr_gltf_number(pbr, "metallicFactor", 1), 0, 1);
+    double roughness = clamp(lr_gltf_number(pbr, "roughnessFactor", 1), 0, 1);
+    lr_status status = LR_OK;
+    if (lr_gltf_member(pbr, "metallicRoughnessTexture")) {
+        metallic = 0;
+        status = lr_import_note(import,
+                                "material \"%s\": metallicRoughnessTexture is not used, the "
+                                "surface is shown as no metal",
+                                material->name);
+    }
+    double transmission =
+        clamp(lr_gltf_number(lr_gltf_extension(json, "KHR_materials_transmission"),
+                             "transmissionFactor", 0),
+              0, 1);
+    double ior = lr_gltf_number(lr_gltf_extension(json, "KHR_materials_ior"), "ior", 1.5);
+    material->ior = ior >= 1 && ior <= 100 ? ior : 1.5;
+    material->one_sided = !json_is_true(lr_gltf_member(json, "doubleSided"));
+
+    /* Mirrors fade out at a roughness of 0.5; what a rough metal would spread is shown as matt. */
+    double mirror = fmax(0, 1 - 2 * roughness);
+    double facing = (material->ior - 1) / (material->ior + 1);
+    lr_color f0 = mix(grey(facing * facing), base, metallic);
+    double width = roughness * roughness;
+    material->shininess = clamp(2 / fmax(width * width, 1e-12) - 2, 0, SHININESS_MAX);
+    /* (n + 8) / 8 keeps the light of a Blinn-Phong highlight the same for all widths; held at 1. */
+    double strength = fmin((material->shininess + 8) / 8, 1 / fmax(greatest(f0), 1e-6));
+    material->specular = lr_vec3_scale(f0, strength);
+    material->reflect = lr_vec3_scale(f0, mirror);
+    set_color(material, base);
+    double through = transmission * (1 - metallic);
+    material->diffuse = grey((1 - metallic) * (1 - transmission) + metallic * (1 - mirror));
+    if (through > 0)
+        set_transmission(json, base, through, material);
+
+    const char *mode = json_string_value(lr_gltf_member(json, "alphaMode"));
+    if (mode && strcmp(mode, "MASK") == 0) {
+        material->alpha_cutoff = clamp(lr_gltf_number(json, "alphaCutoff", 0.5), 0, 1);
+    } else if (mode && strcmp(mode, "BLEND") == 0) {
+        bool textured = lr_gltf_member(pbr, "baseColorTexture") != NULL;
+        material->alpha_cutoff = textured ? 0.5 : 0;
+        material->diffuse = lr_vec3_scale(material->diffuse, alpha);
+        material->transmit = lr_vec3_add(lr_vec3_scale(material->transmit, alpha), grey(1 - alpha));
+        if (alpha < 1 && through == 0) {
+            material->ior = 1;
+            material->one_sided = false;
+        }
+        if (!status)
+            status = lr_import_note(import,
+                                    "material \"%s\": alphaMode BLEND is shown as letting rays "
+                                    "through%s",
+                                    material->name,
+                                    textured ? ", and nothing is where the texture's alpha is "
+                                               "below 0.5"
+                                             : "");
+    }
+    double light = lr_gltf_number(lr_gltf_extension(json, "KHR_materials_emissive_strength"),
+                                  "emissiveStrength", 1);
+    material->emission =
+        lr_vec3_scale(gltf_color(json, "emissiveFactor", 0, 1), clamp(light, 0, LR_COLOR_MAX));
+    if (lr_gltf_member(json, "emissiveTexture") && greatest(material->emission) > 0) {
+        material->emission = grey(0);
+        if (!status)
+            status = lr_import_note(import,
+                                    "material \"%s\": emissiveTexture is not used, the surface "
+                                    "sends out no light",
+                                    material->name);
+    }
+    return status;
+}
+
+/* ---- OBJ and the others -------------------------------------------------------------------- */
+
+static double number_of(const struct aiMaterial *from, const char *key, double fallback)
+{
+    ai_real value = 0;
+    unsigned count = 1;
+    if (aiGetMaterialFloatArray(from, key, 0, 0, &value, &count) != aiReturn_SUCCESS || count < 1)
+        return fallback;
+    return isfinite(value) ? (double)value : fallback;
+}
+
+static lr_color color_of(const struct aiMaterial *from, const char *key, double fallback,
+                         double limit)
+{
+    struct aiColor4D c;
+    if (aiGetMaterialColor(from, key, 0, 0, &c) != aiReturn_SUCCESS)
+        return grey(fallback);
+    return (lr_color){clamp((double)c.r, 0, limit), clamp((double)c.g, 0, limit),
+                      clamp((double)c.b, 0, limit)};
+}
+
+/* The illumination models of the MTL format: 2 and up have highlights; 3, 4, 5, 8 and 9 mirror; 4,
+ * 6, 7 and 9 let rays through, which bend; 5 and 7 share by Fresnel's formulas. */
+static bool one_of(int model, const char *digits)
+{
+    return model >= 0 && model <= 9 && strchr(digits, '0' + model) != NULL;
+}
+
+static void mtl_material(const struct aiMaterial *from, lr_material *material)
+{
+    int model = 2;
+    unsigned count = 1;
+    if (aiGetMaterialIntegerArray(from, AI_MATKEY_OBJ_ILLUM, &model, &count) != aiReturn_SUCCESS)
+        model = 2;
+    lr_color specular = color_of(from, "$clr.specular", 0, 1);
+    double opacity = clamp(number_of(from, "$mat.opacity", 1), 0, 1);
+    double ior = number_of(from, "$mat.refracti", 1);
+    set_color(material, color_of(from, "$clr.diffuse", 0.8, 1));
+    material->diffuse = grey(opacity);
+    material->emission = color_of(from, "$clr.emissive", 0, LR_COLOR_MAX);
+    material->shininess = clamp(number_of(from, "$mat.shininess", 0), 0, SHININESS_MAX);
+    if (model >= 2 && material->shininess > 0)
+        material->specular = specular;
+    if (one_of(model, "34589"))
+        material->reflect = specular;
+    bool bends = one_of(model, "4679");
+    lr_color filter = bends ? color_of(from, "$clr.transparent", 1, 1) : grey(1);
+    material->transmit = lr_vec3_scale(filter, 1 - opacity);
+    material->ior = bends && ior >= 0.01 && ior <= 100 ? ior : 1;
+    material->fresnel = one_of(model, "57");
+}
+
+/* PLY and STL have no materials: the colour of the scene language's default. */
+static void plain_material(lr_material *material)
+{
+    set_color(material, grey(0.8));
+    material->diffuse = grey(1);
+}
+
+/* ---- Both ---------------------------------------------------------------------------------- */
+
+static lr_status name_material(lr_import *import, const struct aiMaterial *from, uint32_t index,
+                               lr_material *material)
+{
+    struct aiString name = {0};
+    char shown[80];
+    if (from && aiGetMaterialString(from, AI_MATKEY_NAME, &name) != aiReturn_SUCCESS)
+        name.data[0] = 0;
+    lr_import_shown(shown, sizeof shown, name.data);
+    if (!shown[0])
+        snprintf(shown, sizeof shown, "material %u", index);
+    material->name = lr_string_copy(shown, strlen(shown));
+    return material->name ? LR_OK : lr_import_no_memory(import);
+}
+
+lr_status lr_import_material(lr_import *import, uint32_t index, uint32_t *material)
+{
+    const struct aiScene *scene = import->scene;
+    lr_scene *to = import->builder->scene;
+    /* One more than assimp's for meshes whose material there is not. */
+    uint32_t slot = index < scene->mNumMaterials ? index : scene->mNumMaterials;
+    const struct aiMaterial *from = slot == index ? scene->mMaterials[index] : NULL;
+    *material = import->materials[slot];
+    if (*material != LR_NONE)
+        return LR_OK;
+    if (to->material_count >= LR_MATERIALS_MAX)
+        return lr_fail(import->error, LR_ERROR_FILE, "%s: more than %d materials", import->shown,
+                       LR_MATERIALS_MAX);
+    lr_material *added = lr_scene_add_material(import->builder);
+    if (!added)
+        return lr_import_no_memory(import);
+    *material = import->materials[slot] = to->material_count - 1;
+    *added = (lr_material){.color = {.size = 1, .direction = {0, 1, 0}}, .ior = 1.5};
+    lr_status status = name_material(import, from, slot, added);
+    if (status)
+        return status;
+    if (import->json)
+        status = gltf_material(import, lr_gltf_material(import, slot), added);
+    else if (from && import->kind == LR_IMPORT_OBJ)
+        mtl_material(from, added);
+    else
+        plain_material(added);
+    added->ambient = added->diffuse;
+    if (!status && from)
+        status = lr_import_texture(import, from, added->name, added);
+    return status;
+}

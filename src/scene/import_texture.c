@@ -1,0 +1,144 @@
+/* Textures of the colour; others are noted. */
+#include "scene/import_internal.h"
+
+#include <assimp/material.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/texture.h"
+
+/* The one of assimp's types that the format uses for the colour. */
+static bool find_color_texture(const struct aiMaterial *from, enum aiTextureType *type,
+                               struct aiString *path)
+{
+    static const enum aiTextureType types[] = {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE};
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
+        *type = types[i];
+        if (aiGetMaterialTexture(from, *type, 0, path, NULL, NULL, NULL, NULL, NULL, NULL) ==
+                aiReturn_SUCCESS &&
+            path->data[0])
+            return true;
+    }
+    return false;
+}
+
+static int integer_of(const struct aiMaterial *from, const char *key, enum aiTextureType type,
+                      int fallback)
+{
+    int value = fallback;
+    unsigned count = 1;
+    if (aiGetMaterialIntegerArray(from, key, type, 0, &value, &count) != aiReturn_SUCCESS)
+        value = fallback;
+    return value;
+}
+
+static lr_wrap wrap_of(const struct aiMaterial *from, const char *key, enum aiTextureType type)
+{
+    switch (integer_of(from, key, type, aiTextureMapMode_Wrap)) {
+    case aiTextureMapMode_Clamp:
+    case aiTextureMapMode_Decal:
+        return LR_WRAP_CLAMP;
+    case aiTextureMapMode_Mirror:
+        return LR_WRAP_MIRROR;
+    default:
+        return LR_WRAP_REPEAT;
+    }
+}
+
+/* The picture inside of the file that the path "*3" or a name stands for; NULL when it is none. */
+static const struct aiTexture *embedded(const struct aiScene *scene, const char *path)
+{
+    if (path[0] != '*')
+        return NULL;
+    char *end;
+    unsigned long index = strtoul(path + 1, &end, 10);
+    return *end == 0 && end != path + 1 && index < scene->mNumTextures && scene->mTextures
+               ? scene->mTextures[index]
+               : NULL;
+}
+
+static lr_status load(lr_import *import, const char *path, lr_wrap wrap_u, lr_wrap wrap_v,
+                      uint32_t *texture, lr_error *error)
+{
+    if (path[0] == '*') {
+        const struct aiTexture *inside = embedded(import->scene, path);
+        /* Without a height it is a compressed file of mWidth bytes. */
+        if (!inside || inside->mHeight != 0 || inside->mWidth == 0 || !inside->pcData)
+            return lr_fail(error, LR_ERROR_FILE, "its picture is not in the file");
+        char name[200];
+        snprintf(name, sizeof name, "%s: picture %.20s", import->shown, path + 1);
+        return lr_texture_decode(import->builder, inside->pcData, inside->mWidth, name, wrap_u,
+                                 wrap_v, texture, error);
+    }
+    char *file;
+    lr_status status = lr_import_resolve(import, path, &file, error);
+    if (!status)
+        status = lr_texture_load(import->builder, file, wrap_u, wrap_v, texture, error);
+    free(file);
+    return status;
+}
+
+static lr_status note_others(lr_import *import, const struct aiMaterial *from, const char *name)
+{
+    static const struct {
+        enum aiTextureType type;
+        const char *what;
+    } others[] = {
+        {aiTextureType_NORMALS, "normal map"},
+        {aiTextureType_HEIGHT, "bump map"},
+        {aiTextureType_SPECULAR, "specular map"},
+        {aiTextureType_OPACITY, "opacity map"},
+        {aiTextureType_EMISSIVE, "emissive map"},
+        {aiTextureType_REFLECTION, "reflection map"},
+        {aiTextureType_LIGHTMAP, "occlusion map"},
+        {aiTextureType_SHININESS, "shininess map"},
+        {aiTextureType_DISPLACEMENT, "displacement map"},
+    };
+    char list[200] = "";
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        struct aiString path;
+        if (aiGetMaterialTexture(from, others[i].type, 0, &path, NULL, NULL, NULL, NULL, NULL,
+                                 NULL) != aiReturn_SUCCESS)
+            continue;
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", others[i].what);
+    }
+    return list[0] ? lr_import_note(import, "material \"%s\": not shown: %s", name, list) : LR_OK;
+}
+
+lr_status lr_import_texture(lr_import *import, const struct aiMaterial *from, const char *name,
+                            lr_material *material)
+{
+    enum aiTextureType type;
+    struct aiString path;
+    lr_status status = note_others(import, from, name);
+    if (status || !find_color_texture(from, &type, &path))
+        return status;
+    if (integer_of(from, _AI_MATKEY_UVWSRC_BASE, type, 0) != 0)
+        return lr_import_note(import,
+                              "material \"%s\": its texture is not shown: it goes by another set "
+                              "of texture coordinates than the first",
+                              name);
+    struct aiUVTransform moved;
+    if (aiGetMaterialUVTransform(from, AI_MATKEY_UVTRANSFORM(type, 0), &moved) == aiReturn_SUCCESS)
+        status = lr_import_note(import,
+                                "material \"%s\": the shift, turn and scale of its texture are "
+                                "left out",
+                                name);
+    lr_wrap wrap_u = wrap_of(from, _AI_MATKEY_MAPPINGMODE_U_BASE, type);
+    lr_wrap wrap_v = wrap_of(from, _AI_MATKEY_MAPPINGMODE_V_BASE, type);
+    lr_error error = {0};
+    uint32_t texture;
+    lr_status loaded = status ? status : load(import, path.data, wrap_u, wrap_v, &texture, &error);
+    if (loaded == LR_OK) {
+        material->color.kind = LR_PATTERN_IMAGE;
+        material->color.texture = texture;
+        return LR_OK;
+    }
+    if (status || loaded == LR_ERROR_MEMORY)
+        return status ? status : lr_fail(import->error, loaded, "%s", error.message);
+    char reason[300];
+    lr_import_shown(reason, sizeof reason, error.message);
+    return lr_import_note(import, "material \"%s\": without its texture: %s", name, reason);
+}
