@@ -192,14 +192,9 @@ void spirv_function_name(const spirv_index *index, const uint32_t *words, uint32
     text[0] = 0;
     if (at)
         spirv_string(words, at + 2, at + spirv_length(words[at]), text, size);
-    text[strcspn(text, "(")] = 0; /* glslang appends the parameter types: "box_test(vf3;" */
+    text[strcspn(text, "(")] = 0; /* glslang appends the parameter types: "ex_dot(vf3;vf3;" */
     if (!text[0])
         snprintf(text, size, "%%%" PRIu32, id);
-}
-
-bool spirv_function_is_box(const char *name)
-{
-    return strncmp(name, "box_", 4) == 0;
 }
 
 bool spirv_is_float_arithmetic(uint32_t opcode)
@@ -334,17 +329,10 @@ lr_status lr_spirv_decorate(const uint32_t *words, size_t count, lr_spirv *out, 
     if (status != LR_OK)
         goto done;
     size_t place = section_end(words, count, ANNOTATIONS), added = 0;
-    bool in_box = false;
     SPIRV_EACH(at, words, count)
     {
         uint32_t opcode = spirv_opcode(words[at]);
-        if (opcode == OP_FUNCTION) {
-            char name[64];
-            spirv_function_name(&index, words, words[at + 2], name, sizeof name);
-            in_box = spirv_function_is_box(name);
-        } else if (opcode == OP_FUNCTION_END) {
-            in_box = false;
-        } else if (!in_box && spirv_is_float_arithmetic(opcode)) {
+        if (spirv_is_float_arithmetic(opcode)) {
             uint32_t id = words[at + 2];
             if (index.no_contraction[id])
                 continue;

@@ -14,8 +14,7 @@ typedef struct lr_spirv {
 void lr_spirv_free(lr_spirv *module);
 
 /* Copies the module `words` into *out with NoContraction added to every float arithmetic
- * instruction that lacks it, except inside functions whose name begins with "box_" (conservative
- * box tests, which may use any arithmetic). LR_ERROR_ARGUMENT when words is no valid module. */
+ * instruction that lacks it. LR_ERROR_ARGUMENT when words is no valid module. */
 lr_status lr_spirv_decorate(const uint32_t *words, size_t count, lr_spirv *out, lr_error *error);
 
 /* Makes the undefined values that an optimiser left at module scope zeros: it joins the ways into a
