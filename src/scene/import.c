@@ -135,8 +135,9 @@ static void start(lr_import *import, lr_scene_builder *builder, const char *base
 
 static void finish(lr_import *import)
 {
-    if (import->scene)
+    if (import->scene && !import->ply)
         aiReleaseImport(import->scene);
+    lr_ply_free(import->ply);
     json_decref(import->json);
     free(import->bytes);
     free(import->meshes);
@@ -195,7 +196,7 @@ static lr_status add_objects(lr_import *import)
     if (!status)
         status = lr_import_progress(import, 0.1);
     if (!status)
-        status = lr_import_parse(import);
+        status = import->kind == LR_IMPORT_PLY ? lr_ply_parse(import) : lr_import_parse(import);
     if (!status)
         status = lr_import_progress(import, 0.6);
     if (!status)

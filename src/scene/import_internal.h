@@ -36,7 +36,8 @@ typedef struct lr_import {
     char *bytes;           /* the file */
     size_t size;
     json_t *json;                /* glTF, else NULL */
-    const struct aiScene *scene; /* as assimp returned it */
+    const struct aiScene *scene; /* as assimp returned it, or within ply */
+    struct lr_ply *ply;          /* PLY, else NULL */
     uint64_t memory;             /* charged so far */
     uint64_t triangles;
     uint32_t notes;
@@ -70,6 +71,10 @@ lr_status lr_import_read(lr_import *import, const char *relative, char **bytes, 
                          lr_error *error);
 /* The path of such a file, which the caller frees. */
 lr_status lr_import_resolve(lr_import *import, const char *relative, char **path, lr_error *error);
+/* import_ply.c: reads a PLY file into import->ply, which the caller frees, and import->scene. */
+lr_status lr_ply_parse(lr_import *import);
+void lr_ply_free(struct lr_ply *ply);
+
 /* Runs assimp's parser on the file into import->scene. */
 lr_status lr_import_parse(lr_import *import);
 

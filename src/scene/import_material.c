@@ -233,7 +233,7 @@ lr_status lr_import_material(lr_import *import, uint32_t index, uint32_t *materi
     lr_scene *to = import->builder->scene;
     /* One more than assimp's for meshes whose material there is not. */
     uint32_t slot = index < scene->mNumMaterials ? index : scene->mNumMaterials;
-    const struct aiMaterial *from = slot == index ? scene->mMaterials[index] : NULL;
+    const struct aiMaterial *from = index < scene->mNumMaterials ? scene->mMaterials[index] : NULL;
     *material = import->materials[slot];
     if (*material != LR_NONE)
         return LR_OK;

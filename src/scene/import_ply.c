@@ -1,0 +1,463 @@
+/* PLY ("The PLY Polygon File Format", Turk, 1994), text and binary, as the scene that assimp would
+ * return: its own reader reads and writes beside its memory when a file is not as it should be. */
+#define _GNU_SOURCE /* strtod_l */
+#include "scene/import_internal.h"
+
+#include <ctype.h>
+#include <locale.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+enum { PROPERTIES_MAX = 64, ELEMENTS_MAX = 16, LINE_MAX_LENGTH = 200 };
+
+typedef enum ply_type {
+    INT8,
+    UINT8,
+    INT16,
+    UINT16,
+    INT32,
+    UINT32,
+    FLOAT32,
+    FLOAT64,
+    TYPES
+} ply_type;
+
+static const uint32_t type_sizes[TYPES] = {1, 1, 2, 2, 4, 4, 4, 8};
+
+/* Where a number of a vertex goes. */
+typedef enum slot { X, Y, Z, NX, NY, NZ, U, V, RED, GREEN, BLUE, SLOTS, OTHER = SLOTS } slot;
+
+typedef struct property {
+    bool is_list, is_corners;
+    ply_type type, count_type;
+    slot slot;
+} property;
+
+typedef struct element {
+    char name[32];
+    uint64_t count;
+    property properties[PROPERTIES_MAX];
+    uint32_t property_count;
+} element;
+
+/* What lr_ply_parse allocates; the scene points into it. */
+struct lr_ply {
+    struct aiScene scene;
+    struct aiMesh mesh, *meshes[1];
+    struct aiNode node;
+    unsigned node_mesh;
+    uint32_t *indices;
+    uint32_t index_count, index_capacity;
+};
+
+typedef struct reader {
+    lr_import *import;
+    struct lr_ply *ply;
+    size_t at;
+    enum { TEXT, LITTLE, BIG } format;
+    locale_t locale;
+    element elements[ELEMENTS_MAX];
+    uint32_t element_count;
+    bool has[SLOTS];
+    const char *what; /* being read, for messages */
+    uint64_t row;
+} reader;
+
+static lr_status header_error(reader *r, const char *what)
+{
+    return lr_fail(r->import->error, LR_ERROR_FILE, "%s: header of PLY: %s", r->import->shown,
+                   what);
+}
+
+static lr_status row_error(reader *r, const char *what)
+{
+    return lr_fail(r->import->error, LR_ERROR_FILE, "%s: %s %llu: %s", r->import->shown, r->what,
+                   (unsigned long long)r->row, what);
+}
+
+/* ---- The header ---------------------------------------------------------------------------- */
+
+/* The next line without its end and the spaces around it; what is longer is cut. */
+static bool next_line(reader *r, char line[LINE_MAX_LENGTH + 1])
+{
+    const char *bytes = r->import->bytes;
+    size_t used = 0;
+    if (r->at >= r->import->size)
+        return false;
+    for (; r->at < r->import->size && bytes[r->at] != '\n' && bytes[r->at] != '\r'; r->at++)
+        if (used < LINE_MAX_LENGTH)
+            line[used++] = bytes[r->at];
+    if (r->at + 1 < r->import->size && bytes[r->at] == '\r' && bytes[r->at + 1] == '\n')
+        r->at++;
+    r->at++;
+    while (used > 0 && isspace((unsigned char)line[used - 1]))
+        used--;
+    line[used] = 0;
+    return true;
+}
+
+static bool find_type(const char *name, ply_type *type)
+{
+    static const char *const names[TYPES][2] = {
+        {"char", "int8"}, {"uchar", "uint8"}, {"short", "int16"},   {"ushort", "uint16"},
+        {"int", "int32"}, {"uint", "uint32"}, {"float", "float32"}, {"double", "float64"}};
+    for (int i = 0; i < TYPES; i++)
+        if (strcmp(name, names[i][0]) == 0 || strcmp(name, names[i][1]) == 0) {
+            *type = (ply_type)i;
+            return true;
+        }
+    return false;
+}
+
+static slot find_slot(const char *name)
+{
+    static const struct {
+        const char *name;
+        slot slot;
+    } names[] = {{"x", X},
+                 {"y", Y},
+                 {"z", Z},
+                 {"nx", NX},
+                 {"ny", NY},
+                 {"nz", NZ},
+                 {"u", U},
+                 {"v", V},
+                 {"s", U},
+                 {"t", V},
+                 {"texture_u", U},
+                 {"texture_v", V},
+                 {"red", RED},
+                 {"green", GREEN},
+                 {"blue", BLUE},
+                 {"diffuse_red", RED},
+                 {"r", RED},
+                 {"g", GREEN},
+                 {"b", BLUE},
+                 {"diffuse_green", GREEN},
+                 {"diffuse_blue", BLUE}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcmp(name, names[i].name) == 0)
+            return names[i].slot;
+    return OTHER;
+}
+
+static lr_status read_property(reader *r, const char *line)
+{
+    char type[32], count_type[32], name[32];
+    if (r->element_count == 0)
+        return header_error(r, "a property before the first element");
+    element *e = &r->elements[r->element_count - 1];
+    if (e->property_count == PROPERTIES_MAX)
+        return header_error(r, "an element has over 64 properties");
+    property *p = &e->properties[e->property_count++];
+    *p = (property){.slot = OTHER};
+    if (sscanf(line, "property list %31s %31s %31s", count_type, type, name) == 3) {
+        p->is_list = true;
+        if (!find_type(count_type, &p->count_type) || p->count_type >= FLOAT32)
+            return header_error(r, "the length of a list has no integer type");
+        p->is_corners = strcmp(e->name, "face") == 0 &&
+                        (strcmp(name, "vertex_indices") == 0 || strcmp(name, "vertex_index") == 0);
+    } else if (sscanf(line, "property %31s %31s", type, name) != 2) {
+        return header_error(r, "a property that is not understood");
+    }
+    if (!find_type(type, &p->type))
+        return header_error(r, "a property of an unknown type");
+    if (!p->is_list && strcmp(e->name, "vertex") == 0) {
+        p->slot = find_slot(name);
+        if (p->slot != OTHER)
+            r->has[p->slot] = true;
+    }
+    return LR_OK;
+}
+
+static lr_status read_element(reader *r, const char *line)
+{
+    unsigned long long count;
+    if (r->element_count == ELEMENTS_MAX)
+        return header_error(r, "over 16 kinds of elements");
+    element *e = &r->elements[r->element_count++];
+    *e = (element){0};
+    if (strchr(line, '-') || sscanf(line, "element %31s %llu", e->name, &count) != 2)
+        return header_error(r, "an element that is not understood");
+    e->count = count;
+    return LR_OK;
+}
+
+static lr_status read_header(reader *r)
+{
+    char line[LINE_MAX_LENGTH + 1], format[32];
+    bool has_format = false;
+    if (!next_line(r, line) || strcmp(line, "ply") != 0)
+        return lr_fail(r->import->error, LR_ERROR_FILE,
+                       "%s: is no PLY file: it does not begin as one", r->import->shown);
+    while (next_line(r, line)) {
+        lr_status status = LR_OK;
+        if (strcmp(line, "end_header") == 0)
+            return has_format ? LR_OK : header_error(r, "no format");
+        if (sscanf(line, "format %31s", format) == 1) {
+            has_format = true;
+            if (strcmp(format, "ascii") == 0)
+                r->format = TEXT;
+            else if (strcmp(format, "binary_little_endian") == 0)
+                r->format = LITTLE;
+            else if (strcmp(format, "binary_big_endian") == 0)
+                r->format = BIG;
+            else
+                return header_error(r, "an unknown format");
+        } else if (strncmp(line, "element ", 8) == 0) {
+            status = read_element(r, line);
+        } else if (strncmp(line, "property ", 9) == 0) {
+            status = read_property(r, line);
+        }
+        if (status)
+            return status;
+    }
+    return header_error(r, "it has no end");
+}
+
+/* ---- Numbers ------------------------------------------------------------------------------- */
+
+static lr_status read_text_number(reader *r, double *value)
+{
+    const char *start = r->import->bytes + r->at;
+    char *end;
+    /* The file ends with a NUL, at which this stops. */
+    *value = strtod_l(start, &end, r->locale);
+    if (end == start || (*end && !isspace((unsigned char)*end)))
+        return row_error(r, "is no number, or the file is cut short");
+    r->at = (size_t)(end - r->import->bytes);
+    return LR_OK;
+}
+
+static lr_status read_binary_number(reader *r, ply_type type, double *value)
+{
+    uint32_t size = type_sizes[type];
+    if (r->import->size - r->at < size)
+        return row_error(r, "the file is cut short here");
+    const unsigned char *b = (const unsigned char *)r->import->bytes + r->at;
+    r->at += size;
+    uint64_t bits = 0;
+    for (uint32_t i = 0; i < size; i++)
+        bits |= (uint64_t)b[r->format == BIG ? size - 1 - i : i] << 8 * i;
+    uint32_t low = (uint32_t)bits;
+    float single;
+    switch (type) {
+    case FLOAT32:
+        memcpy(&single, &low, sizeof single);
+        *value = (double)single;
+        break;
+    case FLOAT64:
+        memcpy(value, &bits, sizeof *value);
+        break;
+    case INT8:
+        *value = (int8_t)bits;
+        break;
+    case INT16:
+        *value = (int16_t)bits;
+        break;
+    case INT32:
+        *value = (int32_t)bits;
+        break;
+    default:
+        *value = (double)bits;
+        break;
+    }
+    return LR_OK;
+}
+
+static lr_status read_number(reader *r, ply_type type, double *value)
+{
+    return r->format == TEXT ? read_text_number(r, value) : read_binary_number(r, type, value);
+}
+
+/* ---- Elements ------------------------------------------------------------------------------ */
+
+/* A corner that is no index of a vertex becomes UINT32_MAX, which no vertex has. */
+static lr_status add_corner(reader *r, double value)
+{
+    struct lr_ply *ply = r->ply;
+    if (!lr_array_reserve((void **)&ply->indices, ply->index_count, &ply->index_capacity,
+                          sizeof *ply->indices))
+        return lr_import_no_memory(r->import);
+    bool valid = value >= 0 && value < (double)UINT32_MAX;
+    ply->indices[ply->index_count++] = valid ? (uint32_t)value : UINT32_MAX;
+    return LR_OK;
+}
+
+static lr_status read_list(reader *r, const property *p, struct aiFace *face)
+{
+    double length, value;
+    lr_status status = read_number(r, p->count_type, &length);
+    if (!status && !(length >= 0 && length <= (double)(r->import->size - r->at)))
+        status = row_error(r, "a list that is longer than the file");
+    for (uint64_t i = 0; !status && i < (uint64_t)length; i++) {
+        status = read_number(r, p->type, &value);
+        if (!status && face && p->is_corners)
+            status = add_corner(r, value);
+    }
+    if (!status && face && p->is_corners)
+        face->mNumIndices += (unsigned)length;
+    return status;
+}
+
+/* Integers stand for 0 to 1. */
+static double color_scale(ply_type type)
+{
+    return type == UINT8 ? 1 / 255.0 : type == UINT16 ? 1 / 65535.0 : 1;
+}
+
+static lr_status read_row(reader *r, const element *e, double values[SLOTS + 1],
+                          struct aiFace *face)
+{
+    lr_status status = LR_OK;
+    for (uint32_t i = 0; !status && i < e->property_count; i++) {
+        const property *p = &e->properties[i];
+        double value;
+        if (p->is_list) {
+            status = read_list(r, p, face);
+            continue;
+        }
+        status = read_number(r, p->type, &value);
+        bool color = p->slot >= RED && p->slot <= BLUE;
+        if (!status)
+            values[p->slot] = color ? value * color_scale(p->type) : value;
+    }
+    return status;
+}
+
+static void store_vertex(struct aiMesh *mesh, uint64_t i, const double v[SLOTS + 1])
+{
+    mesh->mVertices[i] = (struct aiVector3D){(float)v[X], (float)v[Y], (float)v[Z]};
+    if (mesh->mNormals)
+        mesh->mNormals[i] = (struct aiVector3D){(float)v[NX], (float)v[NY], (float)v[NZ]};
+    if (mesh->mTextureCoords[0])
+        mesh->mTextureCoords[0][i] = (struct aiVector3D){(float)v[U], (float)v[V], 0};
+    if (mesh->mColors[0])
+        mesh->mColors[0][i] = (struct aiColor4D){(float)v[RED], (float)v[GREEN], (float)v[BLUE], 1};
+}
+
+/* Room for the rows, of which each takes at least one byte a property. */
+static lr_status prepare(reader *r, const element *e, bool vertices, bool faces)
+{
+    struct aiMesh *mesh = &r->ply->mesh;
+    lr_import *import = r->import;
+    size_t count = (size_t)e->count;
+    uint64_t least = 0;
+    for (uint32_t i = 0; i < e->property_count; i++) {
+        const property *p = &e->properties[i];
+        least += r->format == TEXT ? 2 : type_sizes[p->is_list ? p->count_type : p->type];
+    }
+    if (least == 0 || e->count > (import->size - r->at + 1) / least || e->count >= UINT32_MAX)
+        return lr_fail(import->error, LR_ERROR_FILE,
+                       "%s: its header says %llu of %s, the file is too short for them",
+                       import->shown, (unsigned long long)e->count, r->what);
+    if (faces && e->count > import->options.max_triangles)
+        return lr_fail(import->error, LR_ERROR_FILE,
+                       "%s: has %llu faces, more than %llu triangles; allow more with "
+                       "--max-triangles",
+                       import->shown, (unsigned long long)e->count,
+                       (unsigned long long)import->options.max_triangles);
+    lr_status status = lr_import_charge(import, e->count * (vertices ? 52 : faces ? 36 : 0), "it");
+    if (status)
+        return status;
+    bool good = true;
+    if (vertices) {
+        mesh->mNumVertices = (unsigned)count;
+        good = (mesh->mVertices = lr_alloc(count, sizeof *mesh->mVertices)) != NULL;
+        if (r->has[NX] && r->has[NY] && r->has[NZ])
+            good &= (mesh->mNormals = lr_alloc(count, sizeof *mesh->mNormals)) != NULL;
+        if (r->has[U] && r->has[V])
+            good &= (mesh->mTextureCoords[0] = lr_alloc(count, sizeof(struct aiVector3D))) != NULL;
+        if (r->has[RED] && r->has[GREEN] && r->has[BLUE])
+            good &= (mesh->mColors[0] = lr_alloc(count, sizeof(struct aiColor4D))) != NULL;
+        mesh->mNumUVComponents[0] = 2;
+    }
+    if (faces) {
+        mesh->mNumFaces = (unsigned)count;
+        good = (mesh->mFaces = lr_alloc(count, sizeof *mesh->mFaces)) != NULL;
+    }
+    return good ? LR_OK : lr_import_no_memory(import);
+}
+
+static lr_status read_rows(reader *r, const element *e)
+{
+    struct aiMesh *mesh = &r->ply->mesh;
+    bool vertices = strcmp(e->name, "vertex") == 0 && !mesh->mVertices;
+    bool faces = strcmp(e->name, "face") == 0 && !mesh->mFaces;
+    char what[40];
+    r->what = lr_import_shown(what, sizeof what, e->name);
+    lr_status status = e->count ? prepare(r, e, vertices, faces) : LR_OK;
+    for (r->row = 0; !status && r->row < e->count; r->row++) {
+        double values[SLOTS + 1] = {0};
+        status = read_row(r, e, values, faces ? &mesh->mFaces[r->row] : NULL);
+        if (!status && vertices)
+            store_vertex(mesh, r->row, values);
+        if (!status && r->row % 65536 == 65535)
+            status =
+                lr_import_progress(r->import, 0.1 + 0.5 * (double)r->at / (double)r->import->size);
+    }
+    return status;
+}
+
+static void make_scene(struct lr_ply *ply)
+{
+    uint32_t *indices = ply->indices;
+    for (uint32_t i = 0; i < ply->mesh.mNumFaces; i++) {
+        ply->mesh.mFaces[i].mIndices = indices;
+        indices += ply->mesh.mFaces[i].mNumIndices;
+    }
+    ply->meshes[0] = &ply->mesh;
+    ply->node.mTransformation.a1 = ply->node.mTransformation.b2 = 1;
+    ply->node.mTransformation.c3 = ply->node.mTransformation.d4 = 1;
+    ply->node.mMeshes = &ply->node_mesh;
+    ply->node.mNumMeshes = 1;
+    ply->scene.mRootNode = &ply->node;
+    ply->scene.mMeshes = ply->meshes;
+    ply->scene.mNumMeshes = 1;
+}
+
+lr_status lr_ply_parse(lr_import *import)
+{
+    reader *r = lr_alloc(1, sizeof *r);
+    lr_status status = LR_ERROR_MEMORY;
+    import->ply = lr_alloc(1, sizeof *import->ply);
+    if (r)
+        r->locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (!r || !import->ply || !r->locale) {
+        lr_import_no_memory(import);
+        goto done;
+    }
+    r->import = import;
+    r->ply = import->ply;
+    status = read_header(r);
+    if (!status && !(r->has[X] && r->has[Y] && r->has[Z]))
+        status = header_error(r, "its vertices have no x, y and z");
+    for (uint32_t i = 0; !status && i < r->element_count; i++)
+        status = read_rows(r, &r->elements[i]);
+    if (!status) {
+        make_scene(import->ply);
+        import->scene = &import->ply->scene;
+    }
+done:
+    if (r && r->locale)
+        freelocale(r->locale);
+    free(r);
+    return status;
+}
+
+void lr_ply_free(struct lr_ply *ply)
+{
+    if (!ply)
+        return;
+    free(ply->mesh.mVertices);
+    free(ply->mesh.mNormals);
+    free(ply->mesh.mTextureCoords[0]);
+    free(ply->mesh.mColors[0]);
+    free(ply->mesh.mFaces);
+    free(ply->indices);
+    free(ply);
+}
