@@ -69,6 +69,32 @@ typedef struct lr_scene_info {
 
 void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info);
 
+#define LR_OBJECT_KINDS 9
+
+/* What a scene holds and takes. */
+typedef struct lr_scene_facts {
+    struct {
+        const char *name; /* as the scene language calls them */
+        uint32_t count;
+    } objects[LR_OBJECT_KINDS];
+    uint32_t point_lights, directional_lights, spot_lights; /* written, not added */
+    uint64_t vertices, triangles;                           /* of the meshes, each counted once */
+    uint64_t shown_triangles;                               /* ... as often as objects show them */
+    uint32_t textures;
+    uint64_t texels;
+    bool bounded;          /* there are bounded objects: all but planes */
+    double min[3], max[3]; /* of these, in the world */
+    uint64_t bytes;        /* of all arrays, in host memory */
+    /* Of all that shapes the picture; docs/info.md has the order. The same numbers on two machines
+     * have the same hash, whatever library read them. */
+    char sha256[65];
+} lr_scene_facts;
+
+void lr_scene_get_facts(const lr_scene *scene, lr_scene_facts *facts);
+
+/* The name of a camera, NULL for the only one of a scene. */
+const char *lr_scene_camera_name(const lr_scene *scene, uint32_t index);
+
 /* The languages that scenes are written in: ours, and those of POV-Ray 3.7 and Tachyon. */
 typedef enum lr_scene_format {
     LR_SCENE_YAML,

@@ -268,6 +268,23 @@ static void test_ply(void **state)
     assert_memory_equal(body + 72, face, sizeof face);
     free(ply);
 
+    /* Read again they are the same meshes. */
+    lr_scene *again;
+    assert_int_equal(lr_scene_load(path_of("a.b.yaml"), NULL, &again, &report, NULL), LR_OK);
+    assert_int_equal(again->mesh_count, 2);
+    for (int i = 0; i < 2; i++) {
+        const lr_mesh *a = &scene->meshes[i], *b = &again->meshes[i];
+        SAME(vertex_count);
+        SAME(triangle_count);
+        SAME(closed);
+        assert_memory_equal(a->positions, b->positions, 12 * a->vertex_count);
+        assert_memory_equal(a->triangles, b->triangles, 12 * a->triangle_count);
+        assert_int_equal(a->normals != NULL, b->normals != NULL);
+        if (a->normals)
+            assert_memory_equal(a->normals, b->normals, 12 * a->vertex_count);
+    }
+    lr_scene_destroy(again);
+
     /* The same again replaces them; another scene does not. */
     free(write_scene(scene, "a.b.yaml", LR_SCENE_YAML));
     assert_int_equal(remove(path_of("a.b.yaml")), 0);

@@ -1,0 +1,245 @@
+/* Every number goes into the hash in little-endian bytes: counts, kinds, indices and switches as
+ * uint32, coordinates as float64, what meshes and textures hold as float32 or bytes; -0 as +0. The
+ * order is that of docs/info.md. */
+#include "scene/fingerprint.h"
+
+#include <sha2.h>
+#include <string.h>
+
+#include "base/hash.h"
+
+typedef struct hasher {
+    SHA2_CTX context;
+    size_t used;
+    unsigned char block[4096];
+} hasher;
+
+static void put_bytes(hasher *h, const uint8_t *bytes, size_t count)
+{
+    SHA256Update(&h->context, h->block, h->used);
+    SHA256Update(&h->context, bytes, count);
+    h->used = 0;
+}
+
+static void put_word(hasher *h, uint64_t word, unsigned bytes)
+{
+    if (h->used + bytes > sizeof h->block) {
+        SHA256Update(&h->context, h->block, h->used);
+        h->used = 0;
+    }
+    for (unsigned i = 0; i < bytes; i++)
+        h->block[h->used++] = (unsigned char)(word >> 8 * i);
+}
+
+static void put_count(hasher *h, uint32_t value)
+{
+    put_word(h, value, 4);
+}
+
+static void put_number(hasher *h, double value)
+{
+    uint64_t bits;
+    value = value == 0 ? 0 : value;
+    memcpy(&bits, &value, sizeof bits);
+    put_word(h, bits, 8);
+}
+
+static void put_numbers(hasher *h, const double *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        put_number(h, values[i]);
+}
+
+static void put_vector(hasher *h, lr_vec3 v)
+{
+    put_numbers(h, &v.x, 3);
+}
+
+/* Nothing when there are none. */
+static void put_floats(hasher *h, const float *values, size_t count)
+{
+    for (size_t i = 0; values && i < count; i++) {
+        uint32_t bits;
+        float value = values[i] == 0 ? 0 : values[i];
+        memcpy(&bits, &value, sizeof bits);
+        put_word(h, bits, 4);
+    }
+}
+
+static void put_surroundings(hasher *h, const lr_scene *scene)
+{
+    put_count(h, scene->image.width);
+    put_count(h, scene->image.height);
+    put_count(h, scene->image.samples);
+    put_count(h, scene->image.depth);
+    put_count(h, scene->image.seed);
+    put_number(h, scene->image.min_weight);
+    put_number(h, scene->image.exposure);
+    put_vector(h, scene->ambient);
+    put_vector(h, scene->background[0]);
+    put_vector(h, scene->background[1]);
+    put_vector(h, scene->background_up);
+    put_number(h, scene->fog_density);
+    put_vector(h, scene->fog_density > 0 ? scene->fog_color : (lr_color){0, 0, 0});
+}
+
+static void put_camera(hasher *h, const lr_camera *camera)
+{
+    put_vector(h, camera->from);
+    put_vector(h, camera->to);
+    put_vector(h, camera->up);
+    put_number(h, camera->fov);
+    put_count(h, camera->fov_to_centers);
+}
+
+static void put_light(hasher *h, const lr_light *light)
+{
+    put_count(h, light->kind);
+    put_vector(h, light->color);
+    put_number(h, light->intensity);
+    put_number(h, light->falloff);
+    put_vector(h, light->position);
+    put_vector(h, light->direction);
+    put_number(h, light->angle);
+    put_number(h, light->inner);
+    put_count(h, light->shadows);
+}
+
+static void put_material(hasher *h, const lr_material *m)
+{
+    put_count(h, m->color.kind);
+    put_count(h, m->color.object_space);
+    put_vector(h, m->color.colors[0]);
+    put_vector(h, m->color.colors[1]);
+    put_count(h, m->color.texture);
+    put_number(h, m->color.size);
+    put_vector(h, m->color.origin);
+    put_vector(h, m->color.direction);
+    const lr_color *colors[] = {&m->ambient,  &m->diffuse,  &m->specular,  &m->reflect,
+                                &m->transmit, &m->emission, &m->absorption};
+    for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
+        put_vector(h, *colors[i]);
+    put_number(h, m->shininess);
+    put_count(h, m->highlight);
+    put_number(h, m->ior);
+    put_count(h, m->fresnel);
+    put_count(h, (uint32_t)m->priority);
+    put_number(h, m->alpha_cutoff);
+    put_count(h, m->one_sided);
+}
+
+static void put_shape(hasher *h, const lr_object *object)
+{
+    switch (object->kind) {
+    case LR_SPHERE:
+        put_vector(h, object->sphere.center);
+        put_number(h, object->sphere.radius);
+        break;
+    case LR_PLANE:
+        put_vector(h, object->plane.normal);
+        put_number(h, object->plane.offset);
+        break;
+    case LR_BOX:
+        put_vector(h, object->box.min);
+        put_vector(h, object->box.max);
+        break;
+    case LR_DISK:
+        put_vector(h, object->disk.center);
+        put_vector(h, object->disk.normal);
+        put_number(h, object->disk.radius);
+        break;
+    case LR_RECTANGLE:
+        put_vector(h, object->rectangle.corner);
+        put_vector(h, object->rectangle.u);
+        put_vector(h, object->rectangle.v);
+        break;
+    case LR_CYLINDER:
+    case LR_CONE:
+        put_vector(h, object->cone.from);
+        put_vector(h, object->cone.to);
+        put_number(h, object->cone.radius_from);
+        put_number(h, object->cone.radius_to);
+        break;
+    case LR_TRIANGLE:
+        put_vector(h, object->triangle.a);
+        put_vector(h, object->triangle.b);
+        put_vector(h, object->triangle.c);
+        break;
+    case LR_MESH:
+        put_count(h, object->mesh);
+        break;
+    }
+}
+
+static void put_object(hasher *h, const lr_object *object)
+{
+    put_count(h, object->kind);
+    put_count(h, object->material);
+    put_count(h, object->shadow);
+    put_count(h, object->open);
+    put_count(h, object->inward);
+    put_numbers(h, object->to_world.m[0], 4);
+    put_numbers(h, object->to_world.m[1], 4);
+    put_numbers(h, object->to_world.m[2], 4);
+    put_shape(h, object);
+}
+
+static void put_mesh(hasher *h, const lr_mesh *mesh)
+{
+    size_t vertices = mesh->vertex_count, corners = 3 * (size_t)mesh->triangle_count;
+    put_count(h, mesh->vertex_count);
+    put_count(h, mesh->triangle_count);
+    put_count(h, mesh->closed);
+    put_count(h, mesh->normals != NULL);
+    put_count(h, mesh->uvs != NULL);
+    put_count(h, mesh->colors != NULL);
+    put_floats(h, mesh->positions, 3 * vertices);
+    put_floats(h, mesh->normals, 3 * vertices);
+    put_floats(h, mesh->uvs, 2 * vertices);
+    put_floats(h, mesh->colors, 3 * vertices);
+    for (size_t i = 0; i < corners; i++)
+        put_count(h, mesh->triangles[i]);
+}
+
+static void put_texture(hasher *h, const lr_texture *texture)
+{
+    size_t texels = (size_t)texture->width * texture->height;
+    put_count(h, texture->width);
+    put_count(h, texture->height);
+    put_count(h, texture->wrap_u);
+    put_count(h, texture->wrap_v);
+    put_count(h, texture->floats != NULL);
+    if (texture->bytes)
+        put_bytes(h, texture->bytes, 4 * texels);
+    put_floats(h, texture->floats, 3 * texels);
+}
+
+void lr_scene_hash(const lr_scene *scene, char hash[65])
+{
+    unsigned char digest[SHA256_DIGEST_LENGTH];
+    hasher h = {.used = 0};
+    SHA256Init(&h.context);
+    put_surroundings(&h, scene);
+    put_count(&h, scene->camera_count);
+    for (uint32_t i = 0; i < scene->camera_count; i++)
+        put_camera(&h, &scene->cameras[i]);
+    put_count(&h, scene->default_light);
+    put_count(&h, scene->light_count);
+    for (uint32_t i = 0; i < scene->light_count; i++)
+        put_light(&h, &scene->lights[i]);
+    put_count(&h, scene->material_count);
+    for (uint32_t i = 0; i < scene->material_count; i++)
+        put_material(&h, &scene->materials[i]);
+    put_count(&h, scene->object_count);
+    for (uint32_t i = 0; i < scene->object_count; i++)
+        put_object(&h, &scene->objects[i]);
+    put_count(&h, scene->mesh_count);
+    for (uint32_t i = 0; i < scene->mesh_count; i++)
+        put_mesh(&h, &scene->meshes[i]);
+    put_count(&h, scene->texture_count);
+    for (uint32_t i = 0; i < scene->texture_count; i++)
+        put_texture(&h, &scene->textures[i]);
+    put_bytes(&h, NULL, 0);
+    SHA256Final(digest, &h.context);
+    lr_hash_text(digest, hash);
+}
