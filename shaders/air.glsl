@@ -27,14 +27,16 @@ vec3 remaining_after(float t, uint medium)
 // The weight of what a ray meets after t metres, and the fog's own light on the way.
 vec3 weight_after(gpu_ray ray, float t, out vec3 fog)
 {
+    vec3 weight = ray.weight;
     fog = vec3(0.0);
-    if (!has_fog && !has_absorption)
-        return ray.weight;
-    uint medium = medium_of(ray);
-    vec3 remaining = remaining_after(t, medium);
-    if (has_fog && medium == 0u)
-        fog = ray.weight * (frame.fog_color * (vec3(1.0) - remaining));
-    return ray.weight * remaining;
+    if (has_fog || has_absorption) {
+        uint medium = medium_of(ray);
+        vec3 remaining = remaining_after(t, medium);
+        if (has_fog && medium == 0u)
+            fog = weight * (frame.fog_color * (vec3(1.0) - remaining));
+        weight = weight * remaining;
+    }
+    return weight;
 }
 
 #endif

@@ -25,6 +25,16 @@ layout(constant_id = LR_SPEC_CUTOUTS) const bool has_cutouts = true;
 layout(constant_id = LR_SPEC_SPOTS) const bool has_spots = true;
 layout(constant_id = LR_SPEC_SHUFFLE) const bool has_shuffle = true;
 layout(constant_id = LR_SPEC_TEXEL_QUEUES) const bool texel_queues = true;
+layout(constant_id = LR_SPEC_TREES) const bool has_trees = true;
+layout(constant_id = LR_SPEC_SPHERE_TREE) const bool has_sphere_tree = true;
+layout(constant_id = LR_SPEC_FLAT_TREE) const bool has_flat_tree = true;
+layout(constant_id = LR_SPEC_ELLIPSOID_TREE) const bool has_ellipsoid_tree = true;
+layout(constant_id = LR_SPEC_BOX_TREE) const bool has_box_tree = true;
+layout(constant_id = LR_SPEC_CONE_TREE) const bool has_cone_tree = true;
+layout(constant_id = LR_SPEC_INSTANCES) const bool has_instances = true;
+layout(constant_id = LR_SPEC_INSTANCE_TREE) const bool has_instance_tree = true;
+layout(constant_id = LR_SPEC_ONE_SIDED) const bool has_one_sided = true;
+layout(constant_id = LR_SPEC_CORNERS) const bool has_corners = true;
 
 layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame; };
 layout(set = 0, binding = LR_BIND_SCENE_TEXEL) uniform usamplerBuffer scene_texels;
@@ -41,6 +51,10 @@ layout(std430, set = 0, binding = LR_BIND_HITS) buffer HitBlock { uvec4 hits[]; 
 
 layout(set = 0, binding = LR_BIND_RAYS_TEXEL) uniform usamplerBuffer ray_texels;
 layout(set = 0, binding = LR_BIND_HITS_TEXEL) uniform usamplerBuffer hit_texels;
+layout(std430, set = 0, binding = LR_BIND_FOUND) buffer FoundBlock { uvec4 found_rows[]; };
+layout(set = 0, binding = LR_BIND_FOUND_TEXEL) uniform usamplerBuffer found_texels;
+layout(std430, set = 0, binding = LR_BIND_SHADOWS) buffer ShadowBlock { uvec4 shadow_rays_queue[]; };
+layout(set = 0, binding = LR_BIND_SHADOWS_TEXEL) uniform usamplerBuffer shadow_texels;
 
 layout(push_constant) uniform WorkBlock { gpu_work work; };
 

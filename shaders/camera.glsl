@@ -11,13 +11,12 @@
 // rows and a jitter within the stratum that depend on the pixel. One sample is the pixel's centre.
 vec2 sample_position(uvec2 pixel, uint index)
 {
-    if (hidden(frame.samples) == 1u)
-        return vec2(0.5, 0.5);
     uint jitter = hash(hash_pixel(pixel, frame.seed, 0u) + index);
     uint scramble = hash_pixel(pixel, frame.seed, 1u);
     float x = (float(index) + unit_float(jitter)) * frame.inv_samples;
     uint row = bitfieldReverse(index) ^ scramble;
-    return vec2(min(x, 0.99999994), unit_float(row));
+    vec2 stratified = vec2(min(x, 0.99999994), unit_float(row));
+    return mix(stratified, vec2(0.5), bvec2(hidden(frame.samples) == 1u));
 }
 
 vec3 camera_direction(vec2 position)

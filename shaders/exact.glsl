@@ -16,6 +16,12 @@ float ex_rcp(float x)
     return x < 0.0 ? -y : y;
 }
 
+// A number with the sign of x, kept away from 0 so that ex_rcp of it is finite.
+float away_from_zero(float x)
+{
+    return abs(x) < 1.0e-20 ? 1.0e-20 : x;
+}
+
 // a / b within 2.5 ulp, for b as in ex_rcp.
 float ex_div(float a, float b)
 {

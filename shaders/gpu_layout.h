@@ -34,7 +34,11 @@ typedef struct vec4 {
 #define LR_BIND_HITS 7        /* gpu_hit[] */
 #define LR_BIND_RAYS_TEXEL 8  /* the same buffers as uniform texel buffers, RGBA32UI */
 #define LR_BIND_HITS_TEXEL 9
-#define LR_BIND_COUNT 10
+#define LR_BIND_FOUND 10         /* gpu_hit[]: what each ray of a pass met, in scenes with trees */
+#define LR_BIND_FOUND_TEXEL 11
+#define LR_BIND_SHADOWS 12       /* gpu_shadow_ray[], LR_SHADOW_LIGHTS segments of them */
+#define LR_BIND_SHADOWS_TEXEL 13
+#define LR_BIND_COUNT 14
 
 /* ---- Specialisation constants: what a scene does not use is not compiled ---- */
 #define LR_SPEC_TEXEL_LOADS 0
@@ -47,7 +51,7 @@ typedef struct vec4 {
 #define LR_SPEC_MEDIA 7      /* some object encloses a medium that rays enter */
 #define LR_SPEC_ABSORPTION 8 /* some medium absorbs */
 #define LR_SPEC_FOG 9
-#define LR_SPEC_SCATTER 10 /* some material reflects, transmits or is not everywhere */
+#define LR_SPEC_SCATTER 10 /* some material reflects, transmits or has holes */
 #define LR_SPEC_FRESNEL 11
 #define LR_SPEC_TRANSPARENT 12 /* some shadow caster transmits light */
 #define LR_SPEC_SPECULAR 13
@@ -56,9 +60,19 @@ typedef struct vec4 {
 #define LR_SPEC_SHUFFLE 16            /* share loads within a subgroup */
 #define LR_SPEC_TEXEL_QUEUES 17       /* as LR_SPEC_TEXEL_LOADS, for the queues */
 #define LR_SPEC_TRANSPARENT_PLANES 18 /* ... that is a plane */
-#define LR_SPEC_TEXTURES 19
-#define LR_SPEC_CUTOUTS 20 /* some surface is not there everywhere or from both sides */
-#define LR_SPEC_COUNT 21
+#define LR_SPEC_TREES 19              /* nearest and shadow hits are found by kernels of their own */
+#define LR_SPEC_SPHERE_TREE 20        /* a kind that has many members is found by its tree */
+#define LR_SPEC_FLAT_TREE 21          /* in the order of the kinds above */
+#define LR_SPEC_ELLIPSOID_TREE 22
+#define LR_SPEC_BOX_TREE 23
+#define LR_SPEC_CONE_TREE 24
+#define LR_SPEC_INSTANCES 25          /* there are meshes */
+#define LR_SPEC_INSTANCE_TREE 26
+#define LR_SPEC_ONE_SIDED 27          /* some surface is there from its front only */
+#define LR_SPEC_CORNERS 28            /* some mesh has normals, texture coordinates or colours */
+#define LR_SPEC_TEXTURES 29
+#define LR_SPEC_CUTOUTS 30 /* some surface has holes where its picture is transparent */
+#define LR_SPEC_COUNT 31
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -100,6 +114,10 @@ typedef struct vec4 {
 #define LR_FLAG_DISK 8u        /* flat: u^2 + v^2 <= 1 */
 #define LR_FLAG_TRIANGLE 16u   /* flat: u, v >= 0, u + v <= 1; neither: |u|, |v| <= 1 */
 #define LR_FLAG_SHADOW 32u     /* casts shadows */
+#define LR_FLAG_ONE_SIDED 64u  /* flats, triangles, open cones: not there as seen from behind */
+#define LR_FLAG_SMOOTH 128u    /* triangle: its corners have normals, */
+#define LR_FLAG_UV 256u        /* texture coordinates, */
+#define LR_FLAG_COLORS 512u    /* colours */
 
 #define LR_PRIMITIVE_NONE 0xFFFFFFFFu
 
@@ -113,6 +131,69 @@ struct gpu_sphere {
     uint unused;
 };
 LR_ROWS(gpu_sphere, 2)
+
+/* A triangle of a mesh, in the mesh's space. */
+struct gpu_triangle {
+    vec3 a;
+    uint object; /* of a mesh that one object shows: that object; else 0 */
+    vec3 b;
+    uint order; /* its number in the mesh */
+    vec3 c;
+    uint flags;
+};
+LR_ROWS(gpu_triangle, 3)
+
+/* The vertices of a triangle, by the row of each. */
+struct gpu_corners {
+    uint a;
+    uint b;
+    uint c;
+    uint unused;
+};
+LR_ROWS(gpu_corners, 1)
+
+/* What belongs to a vertex. */
+struct gpu_vertex {
+    uint normal; /* two 16-bit coordinates in the octahedron's square */
+    float u;
+    float v;
+    uint color; /* the square roots of red, green and blue, 10 bits each */
+};
+LR_ROWS(gpu_vertex, 1)
+
+/* A mesh somewhere in the world. */
+struct gpu_instance {
+    vec4 row0; /* world to mesh space */
+    vec4 row1;
+    vec4 row2;
+    uint nodes;  /* the root of the mesh's tree, a row */
+    uint object; /* added to its triangles' */
+    float reach; /* the greatest coordinate of the mesh */
+    uint flags;
+};
+LR_ROWS(gpu_instance, 4)
+
+/* An inner node of a tree: the boxes around its two children, and who they are. A leaf is
+ * LR_NODE_LEAF + (its primitives - 1 << LR_NODE_COUNT_SHIFT) + the number of the first; anything else
+ * is the row of an inner node. */
+struct gpu_node {
+    vec3 min0;
+    uint child0;
+    vec3 max0;
+    uint child1;
+    vec3 min1;
+    uint unused0;
+    vec3 max1;
+    uint unused1;
+};
+LR_ROWS(gpu_node, 4)
+#define LR_NODE_LEAF 0x80000000u
+#define LR_NODE_COUNT_SHIFT 28
+#define LR_NODE_FIRST 0x0FFFFFFFu
+#define LR_NODE_ROWS 4
+#define LR_TREE_DEPTH 64
+#define LR_BOX_SLACK 3.814697265625e-6 /* 2^-18: boxes against rounding, relative to coordinates */
+#define LR_BOX_MISSED 0x7F800000       /* infinity: the distance to a box that is not met */
 
 struct gpu_plane {
     vec3 normal;  /* unit */
@@ -165,7 +246,7 @@ struct gpu_object {
     uint material;
     uint flags;
     uint rank; /* as a medium, 1..65535: the highest of the nested media fills the space */
-    uint unused0;
+    uint instance; /* of a mesh: which */
     uint shadow_red; /* -log2(transmit) in LR_SHADOW_UNIT */
     uint shadow_green;
     uint shadow_blue;
@@ -192,8 +273,7 @@ LR_ROWS(gpu_medium, 1)
 
 #define LR_GPU_FRESNEL 1u
 #define LR_GPU_PHONG 2u
-#define LR_GPU_LIT 4u       /* has ambient, diffuse, specular or emitted light to show */
-#define LR_GPU_ONE_SIDED 8u /* not there from behind, unless the object is solid */
+#define LR_GPU_LIT 4u /* has ambient, diffuse, specular or emitted light to show */
 
 #define LR_MATERIAL_ROWS 9u
 
@@ -259,7 +339,7 @@ struct gpu_list {
     uint base;
     uint begin;
     uint end;
-    uint unused;
+    uint nodes; /* the root of the list's tree, a row, if it has one */
 };
 LR_ROWS(gpu_list, 1)
 #ifdef __STDC__
@@ -301,10 +381,12 @@ struct gpu_frame {
     uint inside3;
     uint balls;   /* row */
     uint bounded; /* primitives that have a ball */
-    uint unused0;
-    uint unused1;
+    float reach;  /* the greatest coordinate in a tree */
+    uint corners; /* row of the gpu_corners of triangle 0 */
+    gpu_list instances;
+    gpu_list triangles;
 };
-LR_ROWS(gpu_frame, 18)
+LR_ROWS(gpu_frame, 20)
 
 /* ---- What differs from one dispatch to the next (push constants) ---- */
 struct gpu_work {
@@ -318,7 +400,13 @@ struct gpu_work {
     uint light;        /* first light and count of a shading pass */
     uint light_count;
     uint first_lights; /* 1 in the first shading pass of the hits: the rest is done once, there */
+    uint shadow_room;  /* shadow rays that a segment holds */
+    uint shadow_first0; /* and how many are in each already */
+    uint shadow_first1;
+    uint shadow_first2;
+    uint shadow_first3;
 };
+#define LR_SHADOW_LIGHTS 4 /* light l goes to segment l modulo this */
 
 /* ---- Queues ---- */
 #define LR_STATE_DEPTH 255u /* bounces so far */
@@ -348,9 +436,18 @@ struct gpu_hit {
     uint ray; /* in the queue */
     float t;
     uint primitive;
-    uint unused;
+    uint object;
 };
 LR_ROWS(gpu_hit, 1)
+
+/* Light on its way from a source to a point, if nothing stands between them. */
+struct gpu_shadow_ray {
+    vec3 origin; /* the point */
+    uint pixel;
+    vec3 value; /* what it adds to the pixel */
+    uint light;
+};
+LR_ROWS(gpu_shadow_ray, 2)
 
 /* What a pass counts. The first three words are an indirect dispatch. */
 struct gpu_counters {
@@ -374,8 +471,16 @@ struct gpu_counters {
     uint non_finite;
     uint saturated;
     uint made; /* camera rays */
+    uint shadow_rays0; /* added to the segments */
+    uint shadow_rays1;
+    uint shadow_rays2;
+    uint shadow_rays3;
+    uint found;      /* entries that the kernels of trees finished */
+    uint unfinished; /* ... that a driver stopped half-way */
+    uint unused0;
+    uint unused1;
 };
-LR_ROWS(gpu_counters, 5)
+LR_ROWS(gpu_counters, 7)
 
 /* ---- The start-up self-test ---- */
 #define LR_SELF_TEST_COUNT 256

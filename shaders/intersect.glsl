@@ -9,12 +9,6 @@
 
 const vec2 miss = vec2(-1.0, -1.0);
 
-// A number with the sign of x, kept away from 0 so that ex_rcp of it is finite.
-float away_from_zero(float x)
-{
-    return abs(x) < 1.0e-20 ? 1.0e-20 : x;
-}
-
 // Unit sphere around the origin; inv_a = 1 / (d . d). The sheet's b^2 - 4 a c cancels when the
 // sphere is far off, so the half chord is measured from the point q of the line that is nearest to
 // the centre: disc = 1 - q . q (Haines, Guenther, Akenine-Moeller, "Precision Improvements for
@@ -54,6 +48,8 @@ vec2 intersect_flat(vec3 o, vec3 d, gpu_flat f)
     bool inside = (f.flags & LR_FLAG_DISK) != 0u
                       ? in_disk
                       : ((f.flags & LR_FLAG_TRIANGLE) != 0u ? in_triangle : in_rectangle);
+    if (has_one_sided)
+        inside = inside && !(ex_dot(f.normal, d) > 0.0 && (f.flags & LR_FLAG_ONE_SIDED) != 0u);
     return inside && abs(t) < LR_T_MAX ? vec2(t, -1.0) : miss;
 }
 
@@ -92,6 +88,13 @@ vec2 intersect_box(vec3 so, vec3 sd)
     return first <= last ? vec2(first, last) : miss;
 }
 
+// Whether direction sd crosses the side of a cone at p from outside.
+bool leads_in(gpu_solid s, vec3 p, vec3 sd)
+{
+    float r = s.radius_from + s.radius_slope * p.z;
+    return p.x * sd.x + p.y * sd.y - s.radius_slope * r * sd.z < 0.0;
+}
+
 // x^2 + y^2 = r(z)^2 with r(z) = radius_from + z radius_slope, cut off at z = 0 and z = 1, with or
 // without the end caps. The origin is first moved to the point nearest to the middle of the axis:
 // the textbook quadratic loses its digits when the cone is far off.
@@ -110,6 +113,10 @@ vec2 intersect_cone(vec3 so, vec3 sd, gpu_solid s)
     float za = q.z + ta * sd.z, zb = q.z + tb * sd.z;
     bool has_a = disc >= 0.0 && za >= 0.0 && za <= 1.0;
     bool has_b = disc >= 0.0 && zb >= 0.0 && zb <= 1.0;
+    if (has_one_sided && (s.flags & LR_FLAG_ONE_SIDED) != 0u) {
+        has_a = has_a && leads_in(s, q + sd * ta, sd);
+        has_b = has_b && leads_in(s, q + sd * tb, sd);
+    }
 
     float inverse = ex_rcp(away_from_zero(sd.z));
     float t0 = -q.z * inverse, t1 = (1.0 - q.z) * inverse;

@@ -19,9 +19,12 @@ uint ray_kind(gpu_ray ray)
 
 uvec4 ray_row(uint row)
 {
+    uvec4 value;
     if (texel_queues)
-        return texelFetch(ray_texels, int(row));
-    return rays_in[row];
+        value = texelFetch(ray_texels, int(row));
+    else
+        value = rays_in[row];
+    return value;
 }
 
 gpu_ray load_ray(uint index)
@@ -61,7 +64,7 @@ gpu_hit load_hit(uint index)
 
 void store_hit(uint index, gpu_hit hit)
 {
-    hits[index] = uvec4(hit.ray, floatBitsToUint(hit.t), hit.primitive, 0u);
+    hits[index] = uvec4(hit.ray, floatBitsToUint(hit.t), hit.primitive, hit.object);
 }
 
 #endif

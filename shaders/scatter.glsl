@@ -27,17 +27,22 @@ float greatest(vec3 v)
 bool admit(child c, uint depth)
 {
     float weight = greatest(c.weight);
-    if (weight < LR_WEIGHT_MIN)
-        return false;
-    if (depth >= frame.depth) {
+    bool counts = !(weight < LR_WEIGHT_MIN);
+    bool too_deep = counts && depth >= frame.depth;
+    bool too_weak = counts && !too_deep && weight < frame.min_weight;
+    if (too_deep)
         atomicAdd(counters.dropped_depth, 1u);
-        return false;
-    }
-    if (weight < frame.min_weight) {
+    if (too_weak)
         atomicAdd(counters.dropped_weight, 1u);
-        return false;
-    }
-    return true;
+    return counts && !too_deep && !too_weak;
+}
+
+// A direction that an interpolated normal brought to the wrong side of the surface, brought back.
+vec3 on_side(vec3 d, vec3 n)
+{
+    const float least = 0.001;
+    float side = ex_dot(d, n);
+    return side < least ? d + n * (least - side) : d;
 }
 
 void emit(uint slot, child c, uint pixel, surface s, vec3 n)
@@ -46,16 +51,18 @@ void emit(uint slot, child c, uint pixel, surface s, vec3 n)
                             c.state, c.weight, 0u, c.media.x, c.media.y, c.media.z, c.media.w));
 }
 
-// Emits the children of `ray`, which met `s` with `weight`; n is the normal against the ray. Returns
-// false when the surface is absent there or hidden within another medium, and so nothing to be lit.
-bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, uvec3 ids, gpu_material m, bool absent,
-             bool wanted)
+// Emits the children of `ray`, which met `s` with `weight`; n is the surface's normal against the ray,
+// lit_by the one that it is lit and mirrors by. Returns false when the surface is absent there or
+// hidden within another medium, and so nothing to be lit.
+bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids, gpu_material m,
+             bool absent, bool wanted)
 {
     bool entering = ex_dot(ray.direction, s.normal) < 0.0;
-    float c1 = min(max(-ex_dot(ray.direction, n), 0.0), 1.0);
+    float c1 = min(max(-ex_dot(ray.direction, lit_by), 0.0), 1.0);
     uvec4 media = ray_media(ray);
     uvec4 beyond = media;
-    bool solid = has_media && !absent && (ids.y & LR_FLAG_SOLID) != 0u && (ids.y & LR_FLAG_TRANSPARENT) != 0u;
+    bool solid = has_media && (ids.y & LR_FLAG_SOLID) != 0u &&
+                 (ids.y & LR_FLAG_TRANSPARENT) != 0u && !absent;
     uint depth = ray.state & LR_STATE_DEPTH;
 
     bool hidden = absent;
@@ -94,11 +101,16 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, uvec3 ids, gpu_materia
     } else if (total) {
         reflect_weight = reflect_weight + transmit_weight;
     }
-    vec3 refracted = solid ? refract_direction(ray.direction, n, c1, c2, gamma) : ray.direction;
+    vec3 refracted = solid ? refract_direction(ray.direction, lit_by, c1, c2, gamma) : ray.direction;
+    vec3 reflected = reflect_direction(ray.direction, lit_by);
+    if (has_corners) {
+        reflected = on_side(reflected, n);
+        refracted = on_side(refracted, -n);
+    }
 
     uint passes = ray.state >> LR_STATE_PASSES_SHIFT;
     uint next = (ray.state & ~(LR_STATE_DEPTH | LR_STATE_KIND)) | (depth + 1u);
-    child mirrored = child(reflect_weight, reflect_direction(ray.direction, n), 1.0, media,
+    child mirrored = child(reflect_weight, reflected, 1.0, media,
                            next | (LR_KIND_REFLECTED << LR_STATE_KIND_SHIFT));
     child through = child(transmit_weight, refracted, -1.0, beyond,
                           next | (LR_KIND_REFRACTED << LR_STATE_KIND_SHIFT));

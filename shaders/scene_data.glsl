@@ -9,9 +9,12 @@
 
 uvec4 scene_row(uint row)
 {
+    uvec4 value;
     if (texel_loads)
-        return texelFetch(scene_texels, int(row));
-    return scene_rows[row];
+        value = texelFetch(scene_texels, int(row));
+    else
+        value = scene_rows[row];
+    return value;
 }
 
 vec4 scene_row_float(uint row)

@@ -14,23 +14,11 @@
 #include "queue.glsl"
 #include "scatter.glsl"
 #include "shadow.glsl"
+#include "shadow_queue.glsl"
 #include "surface.glsl"
 #include "texture.glsl"
 
 layout(local_size_x = LR_GROUP_SIZE) in;
-
-// What is left of each channel behind ray i's obstacles.
-vec3 left_by(shadow_rays rays, uint i)
-{
-    uvec3 depth = uvec3(pick(rays.red, i), pick(rays.green, i), pick(rays.blue, i));
-    bvec3 dark = equal(depth, uvec3(LR_SHADOW_OPAQUE));
-    vec3 left = vec3(1.0);
-    if (has_transparent) {
-        vec3 bits = vec3(depth) * LR_SHADOW_BITS;
-        left = vec3(ex_exp2(bits.x), ex_exp2(bits.y), ex_exp2(bits.z));
-    }
-    return mix(left, vec3(0.0), dark);
-}
 
 // Adds the light of up to four sources from number `first`.
 void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m, surface s, vec3 n,
@@ -73,9 +61,47 @@ void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m,
           uint(met.x != 0u) + uint(met.y != 0u) + uint(met.z != 0u) + uint(met.w != 0u))
     for (uint i = 0u;;) {
         vec3 value = vec3(pick(red, i), pick(green, i), pick(blue, i));
-        film_accumulate(sum, value * left_by(rays, i));
+        uvec3 depth = uvec3(pick(rays.red, i), pick(rays.green, i), pick(rays.blue, i));
+        film_accumulate(sum, value * light_left(depth));
         i++;
         if (i >= most)
+            break;
+    }
+}
+
+// A normal that is interpolated may face away from the ray where the surface itself does not: it is
+// bent towards it, and so reflections stay in front.
+vec3 facing(vec3 n, vec3 d)
+{
+    const float least = 0.01;
+    float cosine = -ex_dot(n, d);
+    return cosine < least ? ex_normalize(n - d * (least - cosine)) : n;
+}
+
+// The same in scenes with trees, where kernels of their own find what stands in the way.
+void send_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m, surface s, vec3 n,
+                 vec3 lit_by, gpu_ray ray, bool lit, inout film_sum sum)
+{
+    vec3 origin = s.lit_from + n * s.offset;
+    gpu_light held;
+    if (has_shuffle)
+        held = load_light(first + min(batch_lane(), count - 1u));
+    for (uint l = 0u;;) {
+        gpu_light light;
+        if (has_shuffle)
+            light = share(held, l);
+        else
+            light = load_light(first + l);
+        arriving_light arriving = sample_light(light, s.position);
+        vec3 light_color = classic_light(m, color, lit_by, -ray.direction, arriving.wi);
+        vec3 value = weight * (arriving.color * light_color);
+        bool reaches = lit && any(greaterThanEqual(value, vec3(LR_FILM_STEP)));
+        bool shadowed = (light.flags & LR_GPU_LIGHT_SHADOWS) != 0u;
+        if (reaches && !shadowed)
+            film_accumulate(sum, value);
+        send_light(gpu_shadow_ray(origin, ray.pixel, value, first + l), reaches && shadowed);
+        l++;
+        if (l >= count)
             break;
     }
 }
@@ -86,29 +112,31 @@ void main()
     bool wanted = index < counters.hits;
     gpu_hit hit = load_hit(wanted ? index : 0u);
     gpu_ray ray = load_ray(hit.ray);
-    surface s = surface_at(hit.primitive, hit.t, ray.origin, ray.direction);
+    surface s = surface_at(hit, ray.origin, ray.direction);
     uvec3 ids = load_object_ids(s.object);
     gpu_material m = load_material(ids.x);
     vec3 color = m.color0;
     if (has_patterns)
         color = pattern_color(m, s.object, s.position, s.normal);
-    bool front = ex_dot(ray.direction, s.normal) < 0.0, absent = false;
-    vec3 n = front ? s.normal : -s.normal;
+    bool absent = false;
     if (has_textures) {
         vec4 texel = material_texel(m, s.uv);
         color = color * texel.xyz;
         absent = has_cutouts && is_hole(m.pattern, m.inv_size, texel.w);
     }
-    if (has_cutouts)
-        absent = absent || (!front && (m.flags & LR_GPU_ONE_SIDED) != 0u &&
-                            (ids.y & LR_FLAG_SOLID) == 0u);
+    vec3 n = ex_dot(ray.direction, s.normal) < 0.0 ? s.normal : -s.normal;
+    vec3 lit_by = n;
+    if (has_corners) {
+        color = color * s.tint;
+        lit_by = facing(ex_dot(ray.direction, s.normal) < 0.0 ? s.shading : -s.shading, ray.direction);
+    }
 
     vec3 fog;
     vec3 weight = weight_after(ray, hit.t, fog);
     bool first_lights = wanted && hidden(work.first_lights) != 0u;
     bool lit = wanted && (m.flags & LR_GPU_LIT) != 0u;
     if (has_scatter) {
-        bool visible = scatter(ray, weight, s, n, ids, m, absent, first_lights);
+        bool visible = scatter(ray, weight, s, n, lit_by, ids, m, absent, first_lights);
         lit = lit && visible;
     }
     film_sum sum = film_zero();
@@ -121,7 +149,10 @@ void main()
     lit = lit && count != 0u;
     for (uint l = 0u;;) {
         uint some = max(min(count - l, 4u), 1u);
-        add_lights(work.light + l, some, weight, color, m, s, n, -ray.direction, lit, sum);
+        if (has_trees)
+            send_lights(work.light + l, some, weight, color, m, s, n, lit_by, ray, lit, sum);
+        else
+            add_lights(work.light + l, some, weight, color, m, s, n, -ray.direction, lit, sum);
         l += 4u;
         if (l >= count)
             break;

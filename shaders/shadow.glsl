@@ -5,6 +5,7 @@
 
 #include "candidates.glsl"
 #include "intersect.glsl"
+#include "obstacle.glsl"
 
 // The rays from one point towards up to four lights, one a component.
 struct shadow_rays {
@@ -62,33 +63,12 @@ vec3 direction_of(shadow_rays rays, uint l)
     return vec3(pick(rays.x, l), pick(rays.y, l), pick(rays.z, l));
 }
 
-bool crosses(vec2 crossing, float t_max)
-{
-    return (crossing.x > 0.0 && crossing.x < t_max) || (crossing.y > 0.0 && crossing.y < t_max);
-}
-
-// What one transparent object takes from the light: its transmit colour once per surface, and its
-// absorption over the length inside.
-uvec3 tint(vec2 crossing, float t_max, uint object)
-{
-    bool first = crossing.x > 0.0 && crossing.x < t_max;
-    bool second = crossing.y > 0.0 && crossing.y < t_max;
-    uint surfaces = (first ? 1u : 0u) + (second ? 1u : 0u);
-    uvec4 shadow = load_object_shadow(object);
-    uvec3 add = shadow.xyz * surfaces;
-    if (has_absorption && surfaces != 0u && shadow.w != 0u) {
-        float inside = max(min(crossing.y, t_max) - max(crossing.x, 0.0), 0.0);
-        add += uvec3(min(load_medium(shadow.w).absorption * inside, vec3(40.0)) * LR_SHADOW_UNIT);
-    }
-    return add;
-}
-
 // Adds to the depth of ray l what a primitive takes; returns whether nothing is left.
 bool dim(inout shadow_rays rays, uint l, vec2 crossing, float t_max, uint object, uint flags)
 {
     uvec3 add = crosses(crossing, t_max) ? uvec3(LR_SHADOW_OPAQUE) : uvec3(0u);
     if (has_transparent && (flags & LR_FLAG_TRANSPARENT) != 0u)
-        add = tint(crossing, t_max, object);
+        add = tint(crossing, t_max, load_object_shadow(object));
     if ((flags & LR_FLAG_SHADOW) == 0u)
         add = uvec3(0u);
     uvec3 depth = uvec3(pick(rays.red, l), pick(rays.green, l), pick(rays.blue, l));

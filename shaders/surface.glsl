@@ -4,6 +4,8 @@
 
 #include "candidates.glsl"
 #include "intersect.glsl"
+#include "mesh.glsl"
+#include "triangle.glsl"
 #include "uv.glsl"
 
 struct surface {
@@ -11,13 +13,66 @@ struct surface {
     float offset;  // how far off the surface a ray must start, metres
     vec3 normal;   // geometric, unit, outward
     uint object;
+    vec3 shading;     // normal to be lit by, unit, on the same side as the geometric one
+    vec3 lit_from;    // where shadow rays start, before the offset
+    vec3 tint;        // of the mesh's corners, times the material's colour
     vec2 uv; // texture coordinates, in scenes with textures
 };
 
+// On a smooth mesh light must fall as if the surface were curved: shadow rays start at the point where
+// the planes that stand on the corners' normals would have it (Hanika, "Hacking the Shadow
+// Terminator", Ray Tracing Gems II, 2021), else flat triangles near the terminator shadow themselves.
+vec3 curved_point(vec3 p, gpu_triangle f, vec3 weight, vec3 na, vec3 nb, vec3 nc)
+{
+    vec3 a = p - f.a, b = p - f.b, c = p - f.c;
+    float da = min(ex_dot(a, na), 0.0), db = min(ex_dot(b, nb), 0.0), dc = min(ex_dot(c, nc), 0.0);
+    return p - (na * (da * weight.x) + nb * (db * weight.y) + nc * (dc * weight.z));
+}
+
+surface mesh_surface(gpu_hit hit, vec3 o, vec3 d)
+{
+    uint number = scene_row(frame.objects + 5u * hit.object + 3u).w;
+    gpu_instance place = load_instance(number);
+    gpu_triangle f = load_triangle(hit.primitive);
+    triangle_hit met = intersect_triangle(instance_point(place, o),
+                                          shear_ray(instance_vector(place, d)), f);
+    vec3 normal = ex_cross(ex_scale_up(f.b - f.a), ex_scale_up(f.c - f.a));
+    vec3 world = ex_normalize(ex_scale_up(instance_normal(place, ex_scale_up(normal))));
+    vec3 position = o + d * hit.t, r = abs(position);
+    float reach = max(max(r.x, r.y), max(r.z, hit.t));
+    surface s = surface(position, reach * LR_OFFSET, world, hit.object, world, position, vec3(1.0),
+                        vec2(0.0));
+    if (has_corners && (f.flags & (LR_FLAG_SMOOTH | LR_FLAG_UV | LR_FLAG_COLORS)) != 0u) {
+        uvec4 corners = scene_row(frame.corners + hit.primitive - frame.triangles.begin);
+        gpu_vertex a = load_vertex(corners.x), b = load_vertex(corners.y), c = load_vertex(corners.z);
+        vec3 w = met.weight;
+        s.uv = vec2(a.u, a.v) * w.x + vec2(b.u, b.v) * w.y + vec2(c.u, c.v) * w.z;
+        if ((f.flags & LR_FLAG_COLORS) != 0u)
+            s.tint = unpack_color(a.color) * w.x + unpack_color(b.color) * w.y +
+                     unpack_color(c.color) * w.z;
+        if ((f.flags & LR_FLAG_SMOOTH) != 0u) {
+            vec3 na = ex_normalize(unpack_normal(a.normal));
+            vec3 nb = ex_normalize(unpack_normal(b.normal));
+            vec3 nc = ex_normalize(unpack_normal(c.normal));
+            vec3 smoothed = instance_normal(place, na * w.x + nb * w.y + nc * w.z);
+            smoothed = ex_normalize(ex_scale_up(smoothed));
+            s.shading = ex_dot(smoothed, world) < 0.0 ? -smoothed : smoothed;
+            vec3 p = f.a * w.x + f.b * w.y + f.c * w.z;
+            bool behind = ex_dot(d, world) > 0.0;
+            vec3 moved = curved_point(p, f, w, behind ? -na : na, behind ? -nb : nb,
+                                      behind ? -nc : nc) - p;
+            s.lit_from = position + vector_of_instance(place, moved);
+        }
+    }
+    return s;
+}
+
 // The error of the position, and so the offset of secondary rays, is proportional to the size of the
 // numbers that it was computed from.
-surface surface_at(uint primitive, float t, vec3 o, vec3 d)
+surface surface_at(gpu_hit hit, vec3 o, vec3 d)
 {
+    uint primitive = hit.primitive;
+    float t = hit.t;
     vec3 position = o + d * t, normal = vec3(0.0, 1.0, 0.0);
     uint object = 0u;
     vec2 uv = vec2(0.0);
@@ -70,7 +125,10 @@ surface surface_at(uint primitive, float t, vec3 o, vec3 d)
         vec2 projected = planar_uv(object, position);
         uv = planar ? projected : uv;
     }
-    return surface(position, reach * LR_OFFSET, normal, object, uv);
+    surface s = surface(position, reach * LR_OFFSET, normal, object, normal, position, vec3(1.0), uv);
+    if (has_instances && is_in(frame.triangles, primitive))
+        s = mesh_surface(hit, o, d);
+    return s;
 }
 
 #endif

@@ -19,14 +19,29 @@ vec3 background(vec3 d)
     return ex_mix(frame.background_low, frame.background_high, clamp(up, 0.0, 1.0));
 }
 
+// What the kernels of trees found for a ray of this pass.
+nearest_hit load_found(uint i)
+{
+    uvec4 a;
+    if (texel_queues)
+        a = texelFetch(found_texels, int(i));
+    else
+        a = found_rows[i];
+    return nearest_hit(uintBitsToFloat(a.y), a.z, a.w);
+}
+
 void main()
 {
     uint index = queue_index();
     bool wanted = index < work.count;
     index = work.first + (wanted ? index : 0u);
     gpu_ray ray = load_ray(index);
-    nearest_hit found = trace_nearest(ray.origin, ray.direction);
-    bool hit = wanted && found.primitive != LR_PRIMITIVE_NONE;
+    nearest_hit met;
+    if (has_trees)
+        met = load_found(index - work.first);
+    else
+        met = trace_nearest(ray.origin, ray.direction);
+    bool hit = wanted && met.primitive != LR_PRIMITIVE_NONE;
     uint slot;
     TAKE_SLOT(counters.hits, hit, slot)
     if (hit && (slot & (uint(LR_GROUP_SIZE) - 1u)) == 0u)
@@ -38,7 +53,7 @@ void main()
     if (wanted && !hit) {
         film_sum sum = film_zero();
         vec3 fog;
-        vec3 weight = weight_after(ray, found.t, fog);
+        vec3 weight = weight_after(ray, met.t, fog);
         if (has_fog)
             film_accumulate(sum, fog);
         film_accumulate(sum, weight * background(ray.direction));
@@ -46,5 +61,5 @@ void main()
     }
     // Last, because on a CPU an atomic waits for all stores before it.
     if (hit)
-        store_hit(slot, gpu_hit(index, found.t, found.primitive, 0u));
+        store_hit(slot, gpu_hit(index, met.t, met.primitive, met.object));
 }

@@ -42,12 +42,12 @@ typedef struct lr_load_options {
     void *user;
 } lr_load_options;
 
-/* Reads and checks the scene file at path ("-" is standard input): glTF, OBJ, PLY, STL and NFF by their
- * endings, everything else as the scene language. options may be NULL. On
- * LR_ERROR_SCENE, *report is the text of all errors, `file:line:col: message` each with its source
- * line and a caret; the caller frees it. Other failures, and what is wrong with the files of other
- * programs, are described in error and leave *report NULL. One file of another program at a time:
- * the library that reads them has one place for its messages. */
+/* Reads and checks the scene file at path ("-" is standard input): glTF, OBJ, PLY, STL and NFF by
+ * their endings, everything else as the scene language. options may be NULL. On LR_ERROR_SCENE,
+ * *report is the text of all errors, `file:line:col: message` each with its source line and a
+ * caret; the caller frees it. Other failures, and what is wrong with the files of other programs,
+ * are described in error and leave *report NULL. One file of another program at a time: the library
+ * that reads them has one place for its messages. */
 lr_status lr_scene_load(const char *path, const lr_load_options *options, lr_scene **scene,
                         char **report, lr_error *error);
 
@@ -68,6 +68,25 @@ typedef struct lr_scene_info {
 } lr_scene_info;
 
 void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info);
+
+/* The languages that scenes are written in: ours, and those of POV-Ray 3.7 and Tachyon. */
+typedef enum lr_scene_format {
+    LR_SCENE_YAML,
+    LR_SCENE_POVRAY,
+    LR_SCENE_TACHYON,
+} lr_scene_format;
+
+/* The language that a path's ending names (.yaml .yml, .pov, .dat .tac), false when it names none.
+ */
+bool lr_scene_format_from_path(const char *path, lr_scene_format *format);
+
+/* Writes the scene to path. Meshes and pictures of LR_SCENE_YAML go into files beside it: PATH
+ * without its ending and with -1.ply, -2.ply, -1.png, ... behind; they replace files of these names
+ * only if path is replaced as well. What the language cannot say is told in *notes, one line each,
+ * which the caller frees; NULL: nothing. Files are replaced only after their successors are
+ * complete. */
+lr_status lr_scene_write(const lr_scene *scene, const char *path, lr_scene_format format,
+                         char **notes, lr_error *error);
 
 /* The JSON Schema of the scene language; the caller frees it. NULL when memory is out. */
 char *lr_scene_schema(void);

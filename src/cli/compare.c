@@ -329,8 +329,8 @@ const command command_compare = {
     .name = "compare",
     .operands = "REF TEST",
     .summary = "compare two pictures: how much they differ, where and why",
-    .details = "Compares the picture TEST with the reference REF (PNM, PNG, PFM, EXR, HDR, JPEG; \"-\"\n"
-               "is standard input) by any set of metrics; all given must be within their\n"
+    .details = "Compares the picture TEST with the reference REF (PNM, PNG, PFM, EXR, HDR, JPEG;\n"
+               "\"-\" is standard input) by any set of metrics; all given must be within their\n"
                "limits. Exit code 0 when they are, 1 when one is not or the sizes differ, 2 when\n"
                "the command line is wrong, 5 when a picture cannot be read. Errors are of\n"
                "samples as stored, white being 1; docs/compare.md tells each metric's formula.",

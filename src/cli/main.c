@@ -13,8 +13,8 @@
 #include <unistd.h>
 
 static const command *const commands[] = {&command_render,   &command_devices, &command_doctor,
-                                          &command_validate, &command_schema,  &command_compare,
-                                          &command_test};
+                                          &command_validate, &command_convert, &command_schema,
+                                          &command_compare,  &command_test};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 static bool is_terminal(int fd)

@@ -10,6 +10,7 @@ enum {
     MAGIC_SWAPPED = 0x03022307,
     MODULE_WORDS_LIMIT = 1 << 26,
 
+    OP_UNDEF = 1,
     OP_SOURCE_CONTINUED = 2,
     OP_SOURCE = 3,
     OP_SOURCE_EXTENSION = 4,
@@ -22,6 +23,7 @@ enum {
     OP_ENTRY_POINT = 15,
     OP_EXECUTION_MODE = 16,
     OP_CAPABILITY = 17,
+    OP_CONSTANT_NULL = 46,
     OP_FUNCTION = 54,
     OP_FUNCTION_END = 56,
     OP_LOAD = 61,
@@ -190,14 +192,9 @@ void spirv_function_name(const spirv_index *index, const uint32_t *words, uint32
     text[0] = 0;
     if (at)
         spirv_string(words, at + 2, at + spirv_length(words[at]), text, size);
-    text[strcspn(text, "(")] = 0; /* glslang appends the parameter types: "box_test(vf3;" */
+    text[strcspn(text, "(")] = 0; /* glslang appends the parameter types: "ex_dot(vf3;vf3;" */
     if (!text[0])
         snprintf(text, size, "%%%" PRIu32, id);
-}
-
-bool spirv_function_is_box(const char *name)
-{
-    return strncmp(name, "box_", 4) == 0;
 }
 
 bool spirv_is_float_arithmetic(uint32_t opcode)
@@ -332,17 +329,10 @@ lr_status lr_spirv_decorate(const uint32_t *words, size_t count, lr_spirv *out, 
     if (status != LR_OK)
         goto done;
     size_t place = section_end(words, count, ANNOTATIONS), added = 0;
-    bool in_box = false;
     SPIRV_EACH(at, words, count)
     {
         uint32_t opcode = spirv_opcode(words[at]);
-        if (opcode == OP_FUNCTION) {
-            char name[64];
-            spirv_function_name(&index, words, words[at + 2], name, sizeof name);
-            in_box = spirv_function_is_box(name);
-        } else if (opcode == OP_FUNCTION_END) {
-            in_box = false;
-        } else if (!in_box && spirv_is_float_arithmetic(opcode)) {
+        if (spirv_is_float_arithmetic(opcode)) {
             uint32_t id = words[at + 2];
             if (index.no_contraction[id])
                 continue;
@@ -360,6 +350,18 @@ lr_status lr_spirv_decorate(const uint32_t *words, size_t count, lr_spirv *out, 
 done:
     spirv_index_free(&index);
     return status;
+}
+
+void lr_spirv_define(lr_spirv *module)
+{
+    SPIRV_EACH(at, module->words, module->count)
+    {
+        uint32_t opcode = spirv_opcode(module->words[at]);
+        if (opcode == OP_FUNCTION)
+            break;
+        if (opcode == OP_UNDEF)
+            module->words[at] = 3u << 16 | OP_CONSTANT_NULL;
+    }
 }
 
 static bool has_instruction(const lr_spirv *module, const uint32_t *instruction)

@@ -14,9 +14,12 @@ typedef struct lr_spirv {
 void lr_spirv_free(lr_spirv *module);
 
 /* Copies the module `words` into *out with NoContraction added to every float arithmetic
- * instruction that lacks it, except inside functions whose name begins with "box_" (conservative
- * box tests, which may use any arithmetic). LR_ERROR_ARGUMENT when words is no valid module. */
+ * instruction that lacks it. LR_ERROR_ARGUMENT when words is no valid module. */
 lr_status lr_spirv_decorate(const uint32_t *words, size_t count, lr_spirv *out, lr_error *error);
+
+/* Makes the undefined values that an optimiser left at module scope zeros: it joins the ways into a
+ * loop with them where a variable gets its value inside. */
+void lr_spirv_define(lr_spirv *module);
 
 /* Copies a module that this project built into *out with its boolean specialisation constants fixed
  * (the one with SpecId i to constants[i] != 0) and without the branches that they rule out. */

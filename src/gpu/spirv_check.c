@@ -282,9 +282,7 @@ static lr_status check_instruction(checker *c, size_t at)
             return refuse(c, name, &rule_float_atomic);
         return LR_OK;
     case KIND_ARITHMETIC:
-        return c->index.no_contraction[word[2]] || spirv_function_is_box(c->function)
-                   ? LR_OK
-                   : refuse(c, name, &rule_contraction);
+        return c->index.no_contraction[word[2]] ? LR_OK : refuse(c, name, &rule_contraction);
     case KIND_UNSIGNED_DIVISION:
     case KIND_SHIFT:
         return check_right_operand(c, operation, word[1], word[4]);

@@ -44,7 +44,6 @@ void spirv_function_name(const spirv_index *index, const uint32_t *words, uint32
                          size_t size);
 
 /* Whether a function may use contracted arithmetic. */
-bool spirv_function_is_box(const char *name);
 
 /* Whether the instruction's result depends on how floats are rounded. */
 bool spirv_is_float_arithmetic(uint32_t opcode);

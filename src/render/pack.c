@@ -18,15 +18,29 @@ bool lr_color_is_black(lr_color color)
     return color.x == 0 && color.y == 0 && color.z == 0;
 }
 
+bool lr_pack_reserve(lr_packed_scene *packed, uint64_t rows)
+{
+    uint64_t wanted = packed->row_count + rows;
+    if (wanted <= packed->row_capacity)
+        return true;
+    if (wanted >= UINT32_MAX)
+        return false;
+    vec4 *grown = realloc(packed->rows, wanted * sizeof *grown);
+    if (!grown)
+        return false;
+    packed->rows = grown;
+    packed->row_capacity = (uint32_t)wanted;
+    return true;
+}
+
 uint32_t lr_pack_rows(lr_packed_scene *packed, const void *record, uint32_t rows)
 {
     uint32_t first = packed->row_count;
-    for (uint32_t i = 0; i < rows; i++) {
-        if (!lr_array_reserve((void **)&packed->rows, packed->row_count, &packed->row_capacity,
-                              sizeof *packed->rows))
-            return UINT32_MAX;
-        memcpy(&packed->rows[packed->row_count++], (const char *)record + 16 * i, 16);
-    }
+    uint64_t room = packed->row_capacity - first;
+    if (room < rows && !lr_pack_reserve(packed, (uint64_t)first / 2 + rows + 64))
+        return UINT32_MAX;
+    memcpy(&packed->rows[first], record, 16 * (size_t)rows);
+    packed->row_count += rows;
     return first;
 }
 
@@ -71,8 +85,7 @@ static void pack_material(const lr_scene *scene, const lr_material *m, struct gp
         .inv_length2 = length2 > 0 ? (float)(1 / length2) : 0,
         .pattern_direction = lr_pack_vec3(direction),
         .flags = (m->fresnel ? LR_GPU_FRESNEL : 0) |
-                 (m->highlight == LR_HIGHLIGHT_PHONG ? LR_GPU_PHONG : 0) | (lit ? LR_GPU_LIT : 0) |
-                 (m->one_sided ? LR_GPU_ONE_SIDED : 0),
+                 (m->highlight == LR_HIGHLIGHT_PHONG ? LR_GPU_PHONG : 0) | (lit ? LR_GPU_LIT : 0),
         .ambient = lr_pack_vec3(ambient),
         .shininess = (float)m->shininess,
         .diffuse = lr_pack_vec3(m->diffuse),
@@ -97,7 +110,7 @@ static lr_status pack_materials(const lr_scene *scene, lr_packed_scene *packed, 
             return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's materials");
         uint32_t *use = packed->constants;
         bool image = m->color.kind == LR_PATTERN_IMAGE;
-        bool cut = m->one_sided || (image && m->alpha_cutoff > 0);
+        bool cut = image && m->alpha_cutoff > 0;
         use[LR_SPEC_TEXTURES] |= image;
         use[LR_SPEC_CUTOUTS] |= cut;
         use[LR_SPEC_PATTERNS] |= !image && m->color.kind != LR_PATTERN_NONE;

@@ -17,7 +17,8 @@ typedef struct lr_settings {
 typedef struct lr_packed_scene {
     vec4 *rows; /* owned */
     uint32_t row_count, row_capacity;
-    uint32_t primitive_count, light_count;
+    uint32_t light_count;
+    uint32_t tests_per_ray; /* about so many primitives does a ray meet on its way */
     struct gpu_frame frame;
     uint32_t constants[LR_SPEC_COUNT]; /* but for those that only the device decides */
 } lr_packed_scene;
@@ -29,6 +30,9 @@ void lr_packed_scene_free(lr_packed_scene *packed);
 /* Appends `rows` rows from `record`; returns the index of the first, or UINT32_MAX when memory is
  * out. */
 uint32_t lr_pack_rows(lr_packed_scene *packed, const void *record, uint32_t rows);
+
+/* Makes room for that many more rows. */
+bool lr_pack_reserve(lr_packed_scene *packed, uint64_t rows);
 
 /* pack_objects.c: the primitives, objects and media of the scene. */
 lr_status lr_pack_objects(const lr_scene *scene, const lr_settings *settings,

@@ -4,7 +4,11 @@
 
 #include "camera.spv.h"
 #include "gpu/commands.h"
+#include "nearest_packet.spv.h"
+#include "nearest_ray.spv.h"
 #include "shade.spv.h"
+#include "shadow_packet.spv.h"
+#include "shadow_ray.spv.h"
 #include "trace.spv.h"
 
 /* Rays, towards lights too, times primitives that one pass may test: some 50 ms on two cores. */
@@ -18,6 +22,9 @@
 #define CHUNK_GPU 262144
 #define CHUNK_SOFTWARE 131072
 #define CHUNK_MIN 256
+
+/* RAYS of the kernels named packet. */
+#define PACKET_RAYS 4
 
 static uint32_t at_least(uint32_t value, uint32_t least)
 {
@@ -34,13 +41,21 @@ static uint32_t groups_for(uint32_t items, uint32_t size)
     return (items + size - 1) / size;
 }
 
+static bool has_trees(const lr_wavefront *w)
+{
+    return w->scene->constants[LR_SPEC_TREES];
+}
+
 /* How the work is cut up: passes that stay short whatever the number of primitives and lights. */
 static void plan(lr_wavefront *w, const lr_render_options *options)
 {
-    uint32_t primitives = w->scene->primitive_count + 8, lights = w->scene->light_count;
-    uint32_t fitting = TESTS_PER_PASS / primitives / (1 + lights);
+    uint32_t primitives = w->scene->tests_per_ray + 8, lights = w->scene->light_count;
+    uint32_t fitting = TESTS_PER_PASS / primitives / (has_trees(w) ? 1 : 1 + lights);
     bool software = w->device->info.software;
     uint32_t chunk = at_most(fitting, software ? CHUNK_SOFTWARE : CHUNK_GPU);
+    uint32_t lights_a_segment = at_least(groups_for(lights, LR_SHADOW_LIGHTS), 1);
+    if (has_trees(w))
+        chunk /= lights_a_segment;
     chunk = at_least(chunk, CHUNK_MIN);
     uint32_t pixels = chunk;
     /* A tile whose samples all fit in half a chunk keeps the film in the cache as well. */
@@ -57,6 +72,9 @@ static void plan(lr_wavefront *w, const lr_render_options *options)
     w->chunk_rays = at_least(chunk, w->tile_size * w->tile_size);
     uint32_t at_once = at_least(LOOPS_PER_INVOCATION / primitives, 1);
     w->lights_at_once = at_most(at_once, at_least(lights, 1));
+    w->shadow_room = 2 * w->chunk_rays * lights_a_segment;
+    /* Where a subgroup is one batch its rays go through a tree together. */
+    w->rays_at_once = software && w->device->shuffle_size == LR_BATCH ? PACKET_RAYS : 1;
 }
 
 /* Bytes of a queue that has room for the children of one chunk. */
@@ -65,13 +83,25 @@ static VkDeviceSize queue_size(const lr_wavefront *w)
     return 2 * sizeof(struct gpu_ray) * (VkDeviceSize)w->chunk_rays;
 }
 
+static VkDeviceSize found_size(const lr_wavefront *w)
+{
+    return has_trees(w) ? sizeof(struct gpu_hit) * (VkDeviceSize)w->chunk_rays : 16;
+}
+
+static VkDeviceSize shadow_size(const lr_wavefront *w)
+{
+    VkDeviceSize segment = sizeof(struct gpu_shadow_ray) * (VkDeviceSize)w->shadow_room;
+    return has_trees(w) ? LR_SHADOW_LIGHTS * segment : 16;
+}
+
 static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *error)
 {
     uint32_t constants[LR_SPEC_COUNT];
     memcpy(constants, w->scene->constants, sizeof constants);
     uint32_t limit = w->device->limits.maxTexelBufferElements;
     constants[LR_SPEC_TEXEL_LOADS] = texel_loads;
-    constants[LR_SPEC_TEXEL_QUEUES] = texel_loads && queue_size(w) / 16 <= limit;
+    constants[LR_SPEC_TEXEL_QUEUES] =
+        texel_loads && queue_size(w) / 16 <= limit && shadow_size(w) / 16 <= limit;
     constants[LR_SPEC_SHUFFLE] = w->device->shuffle_size >= LR_BATCH;
     const struct {
         const uint32_t *words;
@@ -81,9 +111,17 @@ static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *er
         {camera_spv, sizeof camera_spv, &w->camera},
         {trace_spv, sizeof trace_spv, &w->trace},
         {shade_spv, sizeof shade_spv, &w->shade},
+        {nearest_packet_spv, sizeof nearest_packet_spv, &w->nearest},
+        {shadow_packet_spv, sizeof shadow_packet_spv, &w->shadow},
+        {nearest_ray_spv, sizeof nearest_ray_spv, &w->nearest},
+        {shadow_ray_spv, sizeof shadow_ray_spv, &w->shadow},
     };
+    const size_t always = 3, first_packet = 3, first_ray = 5;
+    size_t first = w->rays_at_once > 1 ? first_packet : first_ray;
     lr_status status = LR_OK;
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted && !status; i++) {
+        if (i >= always && !(has_trees(w) && (i == first || i == first + 1)))
+            continue;
         lr_program_desc desc = {wanted[i].words, wanted[i].size / 4, constants, LR_SPEC_COUNT};
         status = lr_program_create(w->device, &w->layout, &desc, wanted[i].program, error);
     }
@@ -107,6 +145,8 @@ static lr_status create_buffers(lr_wavefront *w, lr_error *error)
         {&w->counters_host, LR_BUFFER_HOST, sizeof(struct gpu_counters), "the counters"},
         {&w->hits, LR_BUFFER_TEXEL, sizeof(struct gpu_hit) * (VkDeviceSize)w->chunk_rays,
          "the hits"},
+        {&w->found, LR_BUFFER_TEXEL, found_size(w), "the nearest hits"},
+        {&w->shadow_rays, LR_BUFFER_TEXEL, shadow_size(w), "the queue of shadow rays"},
         {&w->none, LR_BUFFER_TEXEL, 256, "nothing"},
     };
     lr_status status = LR_OK;
@@ -131,6 +171,8 @@ static lr_status create_layout(lr_wavefront *w, lr_error *error)
     types[LR_BIND_SCENE_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
     types[LR_BIND_RAYS_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
     types[LR_BIND_HITS_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+    types[LR_BIND_FOUND_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+    types[LR_BIND_SHADOWS_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
     lr_layout_desc desc = {types, LR_BIND_COUNT, sizeof(struct gpu_work), 2};
     return lr_layout_create(w->device, &desc, &w->layout, error);
 }
@@ -176,6 +218,10 @@ static void list_buffers(const lr_wavefront *w, const lr_buffer *rays_in, const 
         [LR_BIND_HITS] = &w->hits,
         [LR_BIND_RAYS_TEXEL] = rays_in->view ? rays_in : &w->none,
         [LR_BIND_HITS_TEXEL] = w->hits.view ? &w->hits : &w->none,
+        [LR_BIND_FOUND] = &w->found,
+        [LR_BIND_FOUND_TEXEL] = w->found.view ? &w->found : &w->none,
+        [LR_BIND_SHADOWS] = &w->shadow_rays,
+        [LR_BIND_SHADOWS_TEXEL] = w->shadow_rays.view ? &w->shadow_rays : &w->none,
     };
     memcpy(buffers, list, sizeof list);
 }
@@ -224,8 +270,8 @@ static lr_status warm_up(lr_wavefront *w, lr_error *error)
         return status;
     struct gpu_work nothing = {0};
     reset_counters(w);
-    const VkPipeline programs[] = {w->camera, w->trace, w->shade};
-    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) {
+    const VkPipeline programs[] = {w->camera, w->trace, w->shade, w->nearest, w->shadow};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs && programs[i]; i++) {
         lr_commands_barrier(w->device);
         lr_commands_dispatch(w->device, &w->layout, programs[i], w->set, &nothing, 1, 1, 1);
     }
@@ -265,13 +311,13 @@ void lr_wavefront_destroy(lr_wavefront *wavefront)
     lr_wavefront *w = wavefront;
     if (!w->device)
         return;
-    VkPipeline programs[] = {w->camera, w->trace, w->shade};
+    VkPipeline programs[] = {w->camera, w->trace, w->shade, w->nearest, w->shadow};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         if (programs[i])
             w->device->vk.vkDestroyPipeline(w->device->handle, programs[i], NULL);
     lr_layout_destroy(w->device, &w->layout);
-    lr_buffer *buffers[] = {&w->frame,    &w->rows,          &w->film, &w->film_host,
-                            &w->counters, &w->counters_host, &w->hits, &w->none};
+    lr_buffer *buffers[] = {&w->frame,         &w->rows, &w->film, &w->film_host, &w->counters,
+                            &w->counters_host, &w->hits, &w->none, &w->found,     &w->shadow_rays};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         lr_buffer_destroy(w->device, buffers[i]);
     for (uint32_t i = 0; i < w->pool_count; i++)
@@ -284,6 +330,11 @@ static void record_shade(lr_wavefront *w, struct gpu_work *work)
 {
     work->light = 0;
     work->first_lights = 1;
+    work->shadow_room = w->shadow_room;
+    work->shadow_first0 = w->shadow_counts[0];
+    work->shadow_first1 = w->shadow_counts[1];
+    work->shadow_first2 = w->shadow_counts[2];
+    work->shadow_first3 = w->shadow_counts[3];
     do {
         work->light_count = at_most(w->lights_at_once, w->scene->light_count - work->light);
         lr_commands_barrier(w->device);
@@ -299,14 +350,29 @@ static uint32_t shade_dispatches(const lr_wavefront *w)
     return at_least(groups_for(w->scene->light_count, w->lights_at_once), 1);
 }
 
+static void add_shadow_counts(lr_render_stats *s, const struct gpu_counters *c)
+{
+    s->shadow.traced += c->shadow;
+    s->shadow.hit += c->shadow_hits;
+    s->non_finite += c->non_finite;
+    s->saturated += c->saturated;
+}
+
 /* Adds a pass's counts to the statistics, after checking that no kernel stopped half-way and no
  * queue overflowed: drivers have done either without a word. */
 static lr_status take_counts(lr_wavefront *w, uint32_t rays, uint32_t generation, lr_error *error)
 {
     const struct gpu_counters *c = w->counters_host.mapped;
     uint32_t made = generation == 0 ? rays : 0, shaded = c->hits * shade_dispatches(w);
+    uint32_t found = has_trees(w) ? rays : 0;
+    const uint32_t *added = &c->shadow_rays0;
+    bool fits = true;
+    for (uint32_t i = 0; i < LR_SHADOW_LIGHTS; i++) {
+        w->shadow_counts[i] += added[i];
+        fits = fits && w->shadow_counts[i] <= w->shadow_room;
+    }
     if (c->made != made || c->traced != rays || c->hits > rays || c->rays > 2 * w->chunk_rays ||
-        c->shaded != shaded)
+        c->shaded != shaded || c->found != found || c->unfinished || !fits)
         return lr_fail(error, LR_ERROR_DEVICE,
                        "the device did not finish its work (%u of %u camera rays made, %u of %u "
                        "rays traced, %u of %u hits shaded); its driver is faulty, try "
@@ -321,15 +387,67 @@ static lr_status take_counts(lr_wavefront *w, uint32_t rays, uint32_t generation
     s->reflected.hit += c->reflected_hits;
     s->refracted.traced += c->refracted;
     s->refracted.hit += c->refracted_hits;
-    s->shadow.traced += c->shadow;
-    s->shadow.hit += c->shadow_hits;
+    add_shadow_counts(s, c);
     s->passed += c->passed;
     s->dropped_depth += c->dropped_depth;
     s->dropped_weight += c->dropped_weight;
     s->dropped_nesting += c->dropped_nesting;
-    s->non_finite += c->non_finite;
-    s->saturated += c->saturated;
     w->queues[generation + 1].count = c->rays;
+    return LR_OK;
+}
+
+/* Submits what was recorded and reads the counters back. */
+static lr_status finish_pass(lr_wavefront *w, lr_error *error)
+{
+    lr_commands_barrier(w->device);
+    lr_commands_copy(w->device, &w->counters, &w->counters_host, sizeof(struct gpu_counters));
+    double start = lr_now();
+    lr_status status = lr_commands_finish(w->device, error);
+    double seconds = lr_now() - start;
+    if (seconds > w->stats->longest_pass_seconds)
+        w->stats->longest_pass_seconds = seconds;
+    return status;
+}
+
+/* Traces the shadow rays that wait in the segments. */
+static lr_status drain_shadows(lr_wavefront *w, lr_error *error)
+{
+    uint64_t total = 0;
+    for (uint32_t i = 0; i < LR_SHADOW_LIGHTS; i++)
+        total += w->shadow_counts[i];
+    if (total == 0)
+        return LR_OK;
+    lr_status status = lr_commands_begin(w->device, error);
+    if (status)
+        return status;
+    reset_counters(w);
+    lr_commands_barrier(w->device);
+    for (uint32_t i = 0; i < LR_SHADOW_LIGHTS; i++) {
+        struct gpu_work work = {
+            .count = w->shadow_counts[i], .light = i, .shadow_room = w->shadow_room};
+        uint32_t groups = groups_for(work.count, LR_GROUP_SIZE * w->rays_at_once);
+        if (groups)
+            lr_commands_dispatch(w->device, &w->layout, w->shadow, w->set, &work, groups, 1, 1);
+        w->shadow_counts[i] = 0;
+    }
+    status = finish_pass(w, error);
+    const struct gpu_counters *c = w->counters_host.mapped;
+    if (!status && (c->shadow != total || c->unfinished))
+        status = lr_fail(error, LR_ERROR_DEVICE,
+                         "the device finished %u of %llu shadow rays, %u of them half-way; its "
+                         "driver is faulty, try --device cpu",
+                         c->shadow, (unsigned long long)total, c->unfinished);
+    add_shadow_counts(w->stats, c);
+    return status;
+}
+
+/* Traces the waiting shadow rays if those of `rays` more hits might not fit. */
+static lr_status make_shadow_room(lr_wavefront *w, uint32_t rays, lr_error *error)
+{
+    uint32_t most = rays * groups_for(w->scene->light_count, LR_SHADOW_LIGHTS);
+    for (uint32_t i = 0; i < LR_SHADOW_LIGHTS; i++)
+        if (w->shadow_counts[i] + most > w->shadow_room)
+            return drain_shadows(w, error);
     return LR_OK;
 }
 
@@ -338,6 +456,8 @@ static lr_status run_pass(lr_wavefront *w, uint32_t generation, struct gpu_work 
                           const uint32_t camera_groups[3], uint32_t rays, lr_error *error)
 {
     lr_status status = open_generation(w, generation, error);
+    if (!status)
+        status = make_shadow_room(w, rays, error);
     if (!status)
         status = lr_commands_begin(w->device, error);
     if (status)
@@ -350,16 +470,15 @@ static lr_status run_pass(lr_wavefront *w, uint32_t generation, struct gpu_work 
                              camera_groups[0], camera_groups[1], camera_groups[2]);
         lr_commands_barrier(w->device);
     }
+    if (has_trees(w)) {
+        lr_commands_dispatch(w->device, &w->layout, w->nearest, w->set, work,
+                             groups_for(rays, LR_GROUP_SIZE * w->rays_at_once), 1, 1);
+        lr_commands_barrier(w->device);
+    }
     lr_commands_dispatch(w->device, &w->layout, w->trace, w->set, work,
                          groups_for(rays, LR_GROUP_SIZE), 1, 1);
     record_shade(w, work);
-    lr_commands_barrier(w->device);
-    lr_commands_copy(w->device, &w->counters, &w->counters_host, sizeof(struct gpu_counters));
-    double start = lr_now();
-    status = lr_commands_finish(w->device, error);
-    double seconds = lr_now() - start;
-    if (seconds > w->stats->longest_pass_seconds)
-        w->stats->longest_pass_seconds = seconds;
+    status = finish_pass(w, error);
     if (!status)
         status = take_counts(w, rays, generation, error);
     close_if_empty(w, &w->queues[generation]);
@@ -441,6 +560,8 @@ lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_p
         if (!status)
             status = drain_queues(w, done, user, fraction, error);
     }
+    if (!status)
+        status = drain_shadows(w, error);
     if (!status)
         status = read_film(w, tile, samples, error);
     *film = w->film_host.mapped;

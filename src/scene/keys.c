@@ -31,6 +31,9 @@ static const lr_field camera_fields[] = {
      .derived = "the scene's `up`", .doc = "The direction that is up in the picture."},
     {"fov", LR_FIELD_NUMBER, LR_ABOVE | LR_BELOW, RANGE(0, 180), DEFAULT(40),
      MEMBER(lr_camera, fov), .doc = "Vertical field of view in degrees."},
+    {"fov_to_centers", LR_FIELD_BOOLEAN, 0, DEFAULT(0), MEMBER(lr_camera, fov_to_centers),
+     .doc = "The field of view ends in the middle of the outer rows of pixels, as in NFF, not at "
+            "their edges."},
 };
 const lr_record lr_camera_record =
     RECORD("camera", "Where the picture is taken from.", camera_fields, 0);
@@ -238,7 +241,7 @@ const uint32_t lr_light_record_count = COUNT(lr_light_records);
 /* ---- Objects ------------------------------------------------------------------------------- */
 
 #define OBJECT(member) MEMBER(lr_object_draft, object.member)
-/* Read into the draft, applied as translate * rotate * scale. */
+/* Read into the draft, applied as translate * rotate * scale, or the matrix alone. */
 #define TRANSFORM                                                                                  \
     {"scale",                                                                                      \
      LR_FIELD_SCALE,                                                                               \
@@ -254,9 +257,17 @@ const uint32_t lr_light_record_count = COUNT(lr_light_records);
          DEFAULT(0, 0, 0),                                                                         \
          MEMBER(lr_object_draft, rotate),                                                          \
          .doc = "Degrees about x, then y, then z, or {axis, angle}; about the origin; second."},   \
+        {"translate",                                                                              \
+         LR_FIELD_VECTOR,                                                                          \
+         0,                                                                                        \
+         COORDINATE,                                                                               \
+         DEFAULT(0, 0, 0),                                                                         \
+         MEMBER(lr_object_draft, translate),                                                       \
+         .doc = "Moves it; applied last."},                                                        \
     {                                                                                              \
-        "translate", LR_FIELD_VECTOR, 0, COORDINATE, DEFAULT(0, 0, 0),                             \
-            MEMBER(lr_object_draft, translate), .doc = "Moves it; applied last."                   \
+        "matrix", LR_FIELD_MATRIX, LR_DERIVED, COORDINATE, MEMBER(lr_object_draft, matrix),        \
+            .derived = "from the other three",                                                     \
+            .doc = "Three rows of four numbers: any affine map, in place of the other three."      \
     }
 #define PLACEMENT                                                                                  \
     {"material", LR_FIELD_MATERIAL, LR_DERIVED, .derived = "the group's, else grey",               \

@@ -17,6 +17,7 @@ typedef enum lr_field_type {
     LR_FIELD_COLORS,  /* lr_color[2] */
     LR_FIELD_SCALE,   /* lr_vec3 from a number or a vector */
     LR_FIELD_ROTATE,  /* lr_transform from three angles or {axis, angle} */
+    LR_FIELD_MATRIX,  /* lr_transform from its rows */
     LR_FIELD_TEXT,    /* const char *, which lives as long as the tree of nodes */
     /* The rest is structure, which the record's own reader takes from its node. */
     LR_FIELD_RECORD,     /* a mapping as `record` says */
@@ -68,7 +69,7 @@ struct lr_record {
 typedef struct lr_object_draft {
     lr_object object;
     lr_vec3 translate, scale;
-    lr_transform rotate;
+    lr_transform rotate, matrix;
     const char *file; /* mesh */
 } lr_object_draft;
 

@@ -119,6 +119,9 @@ const char *lr_field_expected(const lr_field *field, char buffer[LR_EXPECTED_MAX
     case LR_FIELD_ROTATE:
         snprintf(buffer, size, "three angles [x, y, z] or {axis: [x, y, z], angle: degrees}");
         break;
+    case LR_FIELD_MATRIX:
+        snprintf(buffer, size, "three rows of four numbers");
+        break;
     case LR_FIELD_TEXT:
         snprintf(buffer, size, "%s", field->derived ? field->derived : "a text");
         break;

@@ -137,13 +137,13 @@ static bool read_number(const lr_nff_text *text, double *value)
     if (d.exact) {
         double digits = (double)d.digits;
         digits = d.exponent < 0 ? digits / powers[-d.exponent] : digits * powers[d.exponent];
-        *value = d.negative ? -digits : digits;
+        *value = d.negative && digits != 0 ? -digits : digits; /* -0 means 0 */
         return true;
     }
     char copy[NUMBER_TEXT_MAX];
     memcpy(copy, word->text, word->length);
     copy[word->length] = '\0';
-    *value = strtod_l(copy, NULL, text->locale);
+    *value = strtod_l(copy, NULL, text->locale) + 0.0;
     return true;
 }
 

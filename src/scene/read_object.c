@@ -20,16 +20,25 @@ static bool compose(lr_reader *reader, const lr_object_draft *draft, const lr_re
                     const lr_given *given, const lr_node *at, const surroundings *around,
                     lr_transform *to_world, bool *transformed)
 {
+    const lr_node *matrix = lr_given_value(given, record, "matrix");
     bool moved = lr_given_value(given, record, "scale") ||
                  lr_given_value(given, record, "rotate") ||
                  lr_given_value(given, record, "translate");
-    *transformed = around->transformed || moved;
-    if (!moved) {
+    *transformed = around->transformed || moved || matrix;
+    if (!moved && !matrix) {
         *to_world = around->to_world;
         return true;
     }
+    if (moved && matrix) {
+        lr_report_add(reader->report, matrix->offset,
+                      "the %s has a matrix and also scale, rotate or translate, expected only one "
+                      "way",
+                      record->name);
+        return false;
+    }
     lr_transform own = lr_transform_multiply(draft->rotate, lr_transform_scale(draft->scale));
     own = lr_transform_multiply(lr_transform_translate(draft->translate), own);
+    own = matrix ? draft->matrix : own;
     *to_world = lr_transform_multiply(around->to_world, own);
     bool usable = lr_transform_usable(to_world);
     if (!usable)

@@ -34,6 +34,8 @@ void lr_record_defaults(const lr_record *record, void *base)
         case LR_FIELD_ROTATE:
             *(lr_transform *)(void *)out = lr_transform_identity();
             break;
+        case LR_FIELD_MATRIX: /* derived */
+            break;
         case LR_FIELD_TEXT:
             *(const char **)(void *)out = NULL;
             break;

@@ -358,6 +358,26 @@ static bool read_rotate(lr_reader *reader, const lr_node *node, const lr_field *
     return true;
 }
 
+static bool read_matrix(lr_reader *reader, const lr_node *node, const lr_field *field,
+                        lr_transform *matrix)
+{
+    bool good = node->kind == LR_NODE_LIST && node->count == 3;
+    for (int i = 0; good && i < 3; i++)
+        good = node->items[i]->kind == LR_NODE_LIST && node->items[i]->count == 4;
+    if (!good) {
+        char expected[LR_EXPECTED_MAX];
+        lr_report_type(reader, node, field->name, lr_field_expected(field, expected));
+        return false;
+    }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 4; j++) {
+            char name[64];
+            snprintf(name, sizeof name, "number %d of row %d of %s", j + 1, i + 1, field->name);
+            good &= lr_read_number(reader, node->items[i]->items[j], field, name, &matrix->m[i][j]);
+        }
+    return good;
+}
+
 /* ---- Colours ------------------------------------------------------------------------------- */
 
 bool lr_read_color(lr_reader *reader, const lr_node *node, const lr_field *field, const char *what,
@@ -447,6 +467,8 @@ bool lr_read_value(lr_reader *reader, const lr_node *node, const lr_field *field
         return read_scale(reader, node, field, out);
     case LR_FIELD_ROTATE:
         return read_rotate(reader, node, field, out);
+    case LR_FIELD_MATRIX:
+        return read_matrix(reader, node, field, out);
     case LR_FIELD_TEXT:
         return read_text(reader, node, field, out);
     default:

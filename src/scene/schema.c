@@ -129,6 +129,9 @@ static json_t *field_schema(schema *s, const lr_field *field)
         node = any_of(s, reference(s, "vector"), reference(s, "rotate"));
         fallback = numbers(s, d, 3);
         break;
+    case LR_FIELD_MATRIX:
+        node = list_of(s, list_of(s, ranged(s, "number", field), 4), 3);
+        break;
     case LR_FIELD_RECORD:
         node = record_schema(s, field->record);
         break;

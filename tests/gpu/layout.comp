@@ -6,6 +6,7 @@
 // test_layout.c compares them with what it uploaded, and the offsets in this module with C's.
 #include "gpu_layout.h"
 #include "bindings.glsl"
+#include "mesh.glsl"
 #include "queue.glsl"
 #include "scene_data.glsl"
 
@@ -25,6 +26,12 @@ layout(std430, set = 0, binding = LR_BIND_COUNT) readonly buffer RecordBlock
     gpu_light some_light[2];
     gpu_ray some_ray[2];
     gpu_hit some_hit[2];
+    gpu_shadow_ray some_shadow_ray[2];
+    gpu_triangle some_triangle[2];
+    gpu_corners some_corners[2];
+    gpu_vertex some_vertex[2];
+    gpu_instance some_instance[2];
+    gpu_node some_node[2];
     gpu_self_test_in some_self_test_in[2];
     gpu_self_test_out some_self_test_out[2];
 };
@@ -55,7 +62,7 @@ void put_list(gpu_list x)
     put(x.base);
     put(x.begin);
     put(x.end);
-    put(x.unused);
+    put(x.nodes);
 }
 
 void put_sphere(gpu_sphere x)
@@ -121,7 +128,7 @@ void put_ray(gpu_ray x)
 
 void put_hit(gpu_hit x)
 {
-    put(x.ray); put(floatBitsToUint(x.t)); put(x.primitive); put(x.unused);
+    put(x.ray); put(floatBitsToUint(x.t)); put(x.primitive); put(x.object);
 }
 
 void put_object(uint index)
@@ -136,11 +143,22 @@ void put_object(uint index)
     put(ids.x);
     put(ids.y);
     put(ids.z);
-    put(0u);
+    put(scene_row(frame.objects + 5u * index + 3u).w);
     put(shadow.x);
     put(shadow.y);
     put(shadow.z);
     put(shadow.w);
+}
+
+void put_triangle(gpu_triangle x)
+{
+    put_vec3(x.a); put(x.object); put_vec3(x.b); put(x.order); put_vec3(x.c); put(x.flags);
+}
+
+void put_instance(gpu_instance x)
+{
+    put_vec4(x.row0); put_vec4(x.row1); put_vec4(x.row2); put(x.nodes); put(x.object);
+    put(floatBitsToUint(x.reach)); put(x.flags);
 }
 
 void main()
@@ -155,6 +173,8 @@ void main()
     put_material(load_material(i));
     put_medium(load_medium(i));
     put_light(load_light(i));
+    put_triangle(load_triangle(i));
+    put_instance(load_instance(i));
     put_ray(load_ray(i));
     put_hit(load_hit(i));
     put_vec3(frame.origin); put(floatBitsToUint(frame.half_width)); put_vec3(frame.forward);
@@ -167,15 +187,20 @@ void main()
     put_list(frame.boxes); put_list(frame.cones); put_list(frame.planes); put(frame.objects); put(frame.materials);
     put(frame.media); put(frame.lights); put(frame.inside0); put(frame.inside1);
     put(frame.inside2); put(frame.inside3); put(frame.balls); put(frame.bounded);
-    put(frame.unused0); put(frame.unused1);
+    put(floatBitsToUint(frame.reach)); put(frame.corners); put_list(frame.instances);
+    put_list(frame.triangles);
     put(work.tile_x); put(work.tile_y); put(work.tile_width); put(work.tile_height);
     put(work.first_sample); put(work.count); put(work.first); put(work.light);
-    put(work.light_count); put(work.first_lights);
+    put(work.light_count); put(work.first_lights); put(work.shadow_room);
+    put(work.shadow_first0); put(work.shadow_first1); put(work.shadow_first2);
+    put(work.shadow_first3);
     put(counters.hit_groups); put(counters.hit_groups_y); put(counters.hit_groups_z);
     put(counters.hits); put(counters.rays); put(counters.traced); put(counters.shaded);
     put(counters.reflected); put(counters.refracted); put(counters.passed);
     put(counters.reflected_hits); put(counters.refracted_hits); put(counters.shadow);
     put(counters.shadow_hits); put(counters.dropped_depth); put(counters.dropped_weight);
     put(counters.dropped_nesting); put(counters.non_finite); put(counters.saturated);
-    put(counters.made);
+    put(counters.made); put(counters.shadow_rays0); put(counters.shadow_rays1);
+    put(counters.shadow_rays2); put(counters.shadow_rays3); put(counters.found);
+    put(counters.unfinished); put(counters.unused0); put(counters.unused1);
 }

@@ -62,11 +62,40 @@ static const member members[] = {
     WORD(gpu_object, material),
     WORD(gpu_object, flags),
     WORD(gpu_object, rank),
-    WORD(gpu_object, unused0),
+    WORD(gpu_object, instance),
     WORD(gpu_object, shadow_red),
     WORD(gpu_object, shadow_green),
     WORD(gpu_object, shadow_blue),
     WORD(gpu_object, shadow_rank),
+    FLOATS(gpu_triangle, a),
+    WORD(gpu_triangle, object),
+    FLOATS(gpu_triangle, b),
+    WORD(gpu_triangle, order),
+    FLOATS(gpu_triangle, c),
+    WORD(gpu_triangle, flags),
+    WORD(gpu_corners, a),
+    WORD(gpu_corners, b),
+    WORD(gpu_corners, c),
+    WORD(gpu_corners, unused),
+    WORD(gpu_vertex, normal),
+    FLOATS(gpu_vertex, u),
+    FLOATS(gpu_vertex, v),
+    WORD(gpu_vertex, color),
+    FLOATS(gpu_instance, row0),
+    FLOATS(gpu_instance, row1),
+    FLOATS(gpu_instance, row2),
+    WORD(gpu_instance, nodes),
+    WORD(gpu_instance, object),
+    FLOATS(gpu_instance, reach),
+    WORD(gpu_instance, flags),
+    FLOATS(gpu_node, min0),
+    WORD(gpu_node, child0),
+    FLOATS(gpu_node, max0),
+    WORD(gpu_node, child1),
+    FLOATS(gpu_node, min1),
+    WORD(gpu_node, unused0),
+    FLOATS(gpu_node, max1),
+    WORD(gpu_node, unused1),
     FLOATS(gpu_medium, absorption),
     FLOATS(gpu_medium, ior),
     FLOATS(gpu_material, color0),
@@ -104,7 +133,7 @@ static const member members[] = {
     WORD(gpu_list, base),
     WORD(gpu_list, begin),
     WORD(gpu_list, end),
-    WORD(gpu_list, unused),
+    WORD(gpu_list, nodes),
     FLOATS(gpu_frame, origin),
     FLOATS(gpu_frame, half_width),
     FLOATS(gpu_frame, forward),
@@ -138,8 +167,10 @@ static const member members[] = {
     WORD(gpu_frame, inside3),
     WORD(gpu_frame, balls),
     WORD(gpu_frame, bounded),
-    WORD(gpu_frame, unused0),
-    WORD(gpu_frame, unused1),
+    FLOATS(gpu_frame, reach),
+    WORD(gpu_frame, corners),
+    LIST(gpu_frame, instances),
+    LIST(gpu_frame, triangles),
     WORD(gpu_work, tile_x),
     WORD(gpu_work, tile_y),
     WORD(gpu_work, tile_width),
@@ -150,6 +181,11 @@ static const member members[] = {
     WORD(gpu_work, light),
     WORD(gpu_work, light_count),
     WORD(gpu_work, first_lights),
+    WORD(gpu_work, shadow_room),
+    WORD(gpu_work, shadow_first0),
+    WORD(gpu_work, shadow_first1),
+    WORD(gpu_work, shadow_first2),
+    WORD(gpu_work, shadow_first3),
     FLOATS(gpu_ray, origin),
     WORD(gpu_ray, pixel),
     FLOATS(gpu_ray, direction),
@@ -163,7 +199,11 @@ static const member members[] = {
     WORD(gpu_hit, ray),
     FLOATS(gpu_hit, t),
     WORD(gpu_hit, primitive),
-    WORD(gpu_hit, unused),
+    WORD(gpu_hit, object),
+    FLOATS(gpu_shadow_ray, origin),
+    WORD(gpu_shadow_ray, pixel),
+    FLOATS(gpu_shadow_ray, value),
+    WORD(gpu_shadow_ray, light),
     WORD(gpu_counters, hit_groups),
     WORD(gpu_counters, hit_groups_y),
     WORD(gpu_counters, hit_groups_z),
@@ -184,6 +224,14 @@ static const member members[] = {
     WORD(gpu_counters, non_finite),
     WORD(gpu_counters, saturated),
     WORD(gpu_counters, made),
+    WORD(gpu_counters, shadow_rays0),
+    WORD(gpu_counters, shadow_rays1),
+    WORD(gpu_counters, shadow_rays2),
+    WORD(gpu_counters, shadow_rays3),
+    WORD(gpu_counters, found),
+    WORD(gpu_counters, unfinished),
+    WORD(gpu_counters, unused0),
+    WORD(gpu_counters, unused1),
     FLOATS(gpu_self_test_in, a),
     FLOATS(gpu_self_test_in, b),
     FLOATS(gpu_self_test_in, c),
@@ -211,7 +259,7 @@ enum {
     OP_MEMBER_DECORATE = 72,
     DECORATION_ARRAY_STRIDE = 6,
     DECORATION_OFFSET = 35,
-    IDS_MAX = 8192,
+    IDS_MAX = 65536,
 };
 
 typedef struct module {
@@ -353,15 +401,14 @@ static size_t fill_record(uint32_t *seed, const char *record, uint32_t *words)
             float value = random_sign(seed) * random_magnitude(seed, -100, 100);
             uint32_t word =
                 m->word ? random_bits(seed) >> (random_bits(seed) % 31) : bits_of(value);
-            bool unread = !strncmp(m->name, "unused", 6) && !strcmp(record, "gpu_object");
-            words[m->offset / 4 + k] = unread ? 0 : word;
+            words[m->offset / 4 + k] = word;
         }
     }
     return size;
 }
 
 typedef struct upload {
-    uint32_t rows[4096], frame[128], work[16], counters[128], rays[128], hits[128];
+    uint32_t rows[4096], frame[128], work[32], counters[128], rays[128], hits[128];
     uint32_t expected[1024];
     size_t row_words, expected_words;
 } upload;
@@ -390,9 +437,10 @@ static void fill_upload(upload *u, uint32_t seed)
     struct gpu_frame frame;
     fill_record(&seed, "gpu_frame", u->frame);
     memcpy(&frame, u->frame, sizeof frame);
-    uint32_t *firsts[] = {&textures,          &frame.spheres.base, &frame.solids.base,
-                          &frame.planes.base, &frame.flats.base,   &frame.objects,
-                          &frame.materials,   &frame.media,        &frame.lights};
+    uint32_t *firsts[] = {
+        &textures,         &frame.spheres.base,   &frame.solids.base,   &frame.planes.base,
+        &frame.flats.base, &frame.objects,        &frame.materials,     &frame.media,
+        &frame.lights,     &frame.triangles.base, &frame.instances.base};
     for (uint32_t i = 0; i < ROW_KINDS; i++)
         *firsts[i] = first[i];
     assert_int_equal(textures, 0);

@@ -27,7 +27,7 @@ static void test_keys(void **state)
         {SPHERE("Radius: 1"), "3:12: unknown key \"Radius\" in sphere; did you mean \"radius\"?"},
         {SPHERE("bananas: 1"),
          "3:12: unknown key \"bananas\" in sphere, expected one of center, radius, material, "
-         "shadow, scale, rotate, translate"},
+         "shadow, scale, rotate, translate, matrix"},
         {"colour: 1\n" SPHERE(""), "1:1: unknown key \"colour\" in the scene, expected one of"},
         {"bakground: 1\n" SPHERE(""), "1:1: unknown key \"bakground\" in the scene; did you mean "
                                       "\"background\"?"},
@@ -137,6 +137,16 @@ static void test_values(void **state)
         {SPHERE("scale: 0"), "3:19: scale has a factor of 0"},
         {SPHERE("scale: [1, 0, 1]"), "3:19: scale has a factor of 0"},
         {SPHERE("scale: red"), "3:19: scale is red, expected a number"},
+        {SPHERE("matrix: [[1, 0, 0, 0], [0, 1, 0, 0]]"),
+         "3:20: matrix is a list of 2, expected three rows of four numbers"},
+        {SPHERE("matrix: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1]]"),
+         "3:20: matrix is a list of 3, expected three rows of four numbers"},
+        {SPHERE("matrix: [[1, 0, 0, 0], [0, 1, 0, x], [0, 0, 1, 0]]"),
+         "number 4 of row 2 of matrix is x, expected a number from -1e12 to 1e12"},
+        {SPHERE("matrix: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 1, 0, 0]]"),
+         "the transforms of this sphere are too extreme together"},
+        {SPHERE("translate: [0, 0, 1], matrix: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]"),
+         "the sphere has a matrix and also scale, rotate or translate, expected only one way"},
         {SPHERE("rotate: 90"), "3:20: rotate is 90, expected three angles [x, y, z] or {axis: "
                                "[x, y, z], angle: degrees}"},
         {"camera: {fov: 180}\nobjects: [{sphere: {}}]\n",

@@ -234,7 +234,7 @@ static void test_numbers(void **state)
     };
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         char text[1024];
-        double expected = strtod(numbers[i], NULL), scale = fabs(expected) > 1e12 ? 0 : 1;
+        double expected = strtod(numbers[i], NULL) + 0.0, scale = fabs(expected) > 1e12 ? 0 : 1;
         snprintf(text, sizeof text, VIEW FILL "s %s 0 0 1\n", numbers[i]);
         if (scale == 0)
             continue;

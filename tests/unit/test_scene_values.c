@@ -264,9 +264,12 @@ static void test_transforms(void **state)
             "    objects:\n    - sphere: {translate: [1, 0, 0]}\n"
             "    - group: {scale: 2, objects: [{sphere: {translate: [1, 0, 0]}},\n"
             "        {sphere: {material: {ior: 3}}}]}\n"
-            "- sphere: {}\n");
+            "- sphere: {}\n"
+            "- sphere: {matrix: [[1, 2, 3, 4], [0, 1, 0, -1], [0, 0, 1, 0.5]]}\n"
+            "- group: {translate: [0, 5, 0], objects: [{sphere: {matrix: [[0, 1, 0, 0], "
+            "[1, 0, 0, 0], [0, 0, 1, 7]]}}]}\n");
     const lr_object *o = s->objects;
-    assert_int_equal(s->object_count, 9);
+    assert_int_equal(s->object_count, 11);
     assert_true(o[0].transformed);
     assert_maps(&o[0], 0, 0, 0, 1, 2, 3);
     assert_maps(&o[1], 1, 1, 1, 3, 2, 2);
@@ -284,6 +287,9 @@ static void test_transforms(void **state)
     assert_true(o[7].transformed);
     assert_near(s->materials[o[8].material].ior, 1.5, 0);
     assert_false(o[8].transformed);
+    assert_true(o[9].transformed);
+    assert_maps(&o[9], 1, 10, 100, 325, 9, 100.5);
+    assert_maps(&o[10], 1, 2, 3, 2, 6, 10);
     lr_scene_destroy(s);
 }
 

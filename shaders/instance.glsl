@@ -1,0 +1,47 @@
+// The meshes of the scene: each stands in a tree of its own, and each place where it is shown maps rays
+// into its space. Distances along a ray are the same in both.
+#ifndef INSTANCE_GLSL
+#define INSTANCE_GLSL
+
+#include "mesh.glsl"
+#include "tree.glsl"
+#include "triangle.glsl"
+
+gpu_instance joint_instance(uint i)
+{
+    uint at = frame.instances.base + 4u * i;
+    uvec4 held = hold_rows(at, 4u);
+    uvec4 a = held_row(held, at, 0u), b = held_row(held, at, 1u);
+    uvec4 c = held_row(held, at, 2u), d = held_row(held, at, 3u);
+    return gpu_instance(uintBitsToFloat(a), uintBitsToFloat(b), uintBitsToFloat(c), d.x, d.y,
+                        uintBitsToFloat(d.z), d.w);
+}
+
+vec3 world_o[RAYS], world_d[RAYS];
+sheared_ray mesh_ray[RAYS];
+
+void keep_world(uint k)
+{
+    world_o[k] = ray_o[k];
+    world_d[k] = ray_d[k];
+}
+
+// Ray k in the space of an instance.
+void enter_instance(uint k, gpu_instance place)
+{
+    ray_o[k] = instance_point(place, world_o[k]);
+    ray_d[k] = instance_vector(place, world_d[k]);
+    mesh_ray[k] = shear_ray(ray_d[k]);
+    slab_ready(k, place.reach);
+}
+
+// Back in the world.
+void leave_instance(uint k)
+{
+    ray_o[k] = world_o[k];
+    ray_d[k] = world_d[k];
+    if (has_instance_tree)
+        slab_ready(k, frame.reach);
+}
+
+#endif

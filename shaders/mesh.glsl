@@ -1,0 +1,81 @@
+// Meshes: loads of their parts, and the way in and out of the space that a mesh is described in.
+#ifndef MESH_GLSL
+#define MESH_GLSL
+
+#include "exact.glsl"
+#include "scene_data.glsl"
+
+gpu_instance load_instance(uint i)
+{
+    uint at = frame.instances.base + 4u * i;
+    uvec4 d = scene_row(at + 3u);
+    return gpu_instance(scene_row_float(at), scene_row_float(at + 1u), scene_row_float(at + 2u), d.x,
+                        d.y, uintBitsToFloat(d.z), d.w);
+}
+
+gpu_triangle load_triangle(uint i)
+{
+    uint at = frame.triangles.base + 3u * i;
+    uvec4 a = scene_row(at), b = scene_row(at + 1u), c = scene_row(at + 2u);
+    return gpu_triangle(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w,
+                        uintBitsToFloat(c.xyz), c.w);
+}
+
+gpu_vertex load_vertex(uint row)
+{
+    uvec4 a = scene_row(row);
+    return gpu_vertex(a.x, uintBitsToFloat(a.y), uintBitsToFloat(a.z), a.w);
+}
+
+vec3 instance_point(gpu_instance s, vec3 p)
+{
+    return vec3(ex_dot(s.row0.xyz, p) + s.row0.w, ex_dot(s.row1.xyz, p) + s.row1.w,
+                ex_dot(s.row2.xyz, p) + s.row2.w);
+}
+
+vec3 instance_vector(gpu_instance s, vec3 v)
+{
+    return vec3(ex_dot(s.row0.xyz, v), ex_dot(s.row1.xyz, v), ex_dot(s.row2.xyz, v));
+}
+
+// A normal of the mesh in the world, not of unit length.
+vec3 instance_normal(gpu_instance s, vec3 n)
+{
+    return s.row0.xyz * n.x + s.row1.xyz * n.y + s.row2.xyz * n.z;
+}
+
+// A vector of the mesh in the world, by Cramer's rule.
+vec3 vector_of_instance(gpu_instance s, vec3 v)
+{
+    vec3 x = ex_cross(s.row1.xyz, s.row2.xyz), y = ex_cross(s.row2.xyz, s.row0.xyz);
+    vec3 z = ex_cross(s.row0.xyz, s.row1.xyz);
+    return (x * v.x + y * v.y + z * v.z) * ex_rcp(away_from_zero(ex_dot(s.row0.xyz, x)));
+}
+
+// v times the power of two that brings its greatest component to 1..2.
+vec3 ex_scale_up(vec3 v)
+{
+    vec3 a = abs(v);
+    uint exponent = floatBitsToUint(max(a.x, max(a.y, a.z))) >> 23;
+    return v * uintBitsToFloat(clamp(254u - exponent, 1u, 253u) << 23);
+}
+
+// A normal from its place in the octahedron's square, not of unit length (Cigolle et al., "A Survey of
+// Efficient Representations for Independent Unit Vectors", JCGT 2014).
+vec3 unpack_normal(uint bits)
+{
+    float x = float(int(bits & 0xFFFFu) - 32767) * 3.05185094e-5;
+    float y = float(int(bits >> 16) - 32767) * 3.05185094e-5;
+    float z = 1.0 - abs(x) - abs(y);
+    float fold = max(-z, 0.0);
+    return vec3(x + (x >= 0.0 ? -fold : fold), y + (y >= 0.0 ? -fold : fold), z);
+}
+
+vec3 unpack_color(uint bits)
+{
+    uvec3 fields = uvec3(bits, bits >> 10, bits >> 20) & 1023u;
+    vec3 root = vec3(ivec3(fields)) * 9.77517106e-4;
+    return root * root;
+}
+
+#endif

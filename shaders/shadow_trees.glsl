@@ -1,0 +1,160 @@
+// Which shadow rays reach their points, in scenes with trees; the light of those goes into the film.
+#include "gpu_layout.h"
+#include "bindings.glsl"
+#include "film.glsl"
+#include "instance.glsl"
+#include "light.glsl"
+#include "obstacle.glsl"
+#include "shadow_queue.glsl"
+
+layout(local_size_x = LR_GROUP_SIZE) in;
+
+uint met = 0u, dark = 0u;  // bit k: ray k met something, and none of its light is left
+uvec3 ray_depth[RAYS];     // optical depths so far, in scenes with transparent shadow casters
+
+// What stands in the way: whether its material lets light through, and then its record for shadows.
+struct obstacle {
+    bool there, transparent;
+    uvec4 shadow;
+};
+
+obstacle joint_obstacle(bool valid, uint object, uint flags)
+{
+    uvec4 shadow = uvec4(0u);
+    if (has_transparent) {
+        uint at = frame.objects + 5u * object + 4u;
+        shadow = held_row(hold_rows(at, 1u), at, 0u);
+    }
+    return obstacle(valid && (flags & LR_FLAG_SHADOW) != 0u, (flags & LR_FLAG_TRANSPARENT) != 0u,
+                    shadow);
+}
+
+// What it takes from ray k.
+void dim(uint k, obstacle by, vec2 crossing)
+{
+    float t_max = ray_limit[k];
+    bool meets = by.there && crosses(crossing, t_max), blocked = meets;
+    if (has_transparent) {
+        uvec3 depth = uvec3(LR_SHADOW_OPAQUE);
+        if (by.transparent)
+            depth = tint(crossing, t_max, by.shadow);
+        depth = min(ray_depth[k] + (meets ? depth : uvec3(0u)), uvec3(LR_SHADOW_OPAQUE));
+        ray_depth[k] = depth;
+        blocked = depth == uvec3(LR_SHADOW_OPAQUE);
+    }
+    met |= meets ? 1u << (k & 31u) : 0u;
+    dark |= blocked ? 1u << (k & 31u) : 0u;
+    ray_limit[k] = blocked ? -1.0 : t_max;
+}
+
+void shadow_sphere(uint i, bool valid)
+{
+    gpu_sphere s = joint_sphere(i);
+    obstacle by = joint_obstacle(valid, s.object, s.flags);
+    EACH_RAY dim(k, by, intersect_sphere(ray_o[k], ray_d[k], ray_inv_a[k], s));
+}
+
+void shadow_flat(uint i, bool valid)
+{
+    gpu_flat f = joint_flat(i);
+    obstacle by = joint_obstacle(valid, f.object, f.flags);
+    EACH_RAY dim(k, by, intersect_flat(ray_o[k], ray_d[k], f));
+}
+
+void shadow_solid(uint i, bool valid)
+{
+    gpu_solid s = joint_solid(i);
+    obstacle by = joint_obstacle(valid, s.object, s.flags);
+    EACH_RAY dim(k, by, intersect_solid(ray_o[k], ray_d[k], s, i));
+}
+
+void shadow_plane(uint i, bool valid)
+{
+    gpu_plane p = load_plane(i);
+    obstacle by = joint_obstacle(valid, p.object, p.flags);
+    EACH_RAY dim(k, by, intersect_plane(ray_o[k], ray_d[k], p.normal, p.offset));
+}
+
+void shadow_triangle(uint i, bool valid, gpu_instance place)
+{
+    gpu_triangle f = joint_triangle(i);
+    obstacle by = joint_obstacle(valid, f.object + place.object, f.flags | place.flags);
+    EACH_RAY dim(k, by, vec2(intersect_triangle(ray_o[k], mesh_ray[k], f).t, -1.0));
+}
+
+void shadow_instance(uint i, bool valid)
+{
+    gpu_instance place = joint_instance(i);
+    EACH_RAY enter_instance(k, place);
+    if (valid)
+        VISIT_TREE(place.nodes, shadow_triangle(i, valid, place))
+    EACH_RAY leave_instance(k);
+}
+
+// ray_depth[i], by selects: an index that is known only at run time would keep the whole array in
+// memory.
+uvec3 depth_of(uint i)
+{
+    uvec3 depth = uvec3(0u);
+    EACH_RAY depth = mix(depth, ray_depth[k], bvec3(k == i));
+    return depth;
+}
+
+// Number of shadow ray k in the queue.
+uint shadow_index(uint k)
+{
+    return work.light * work.shadow_room + min(packet_index(k), max(work.count, 1u) - 1u);
+}
+
+void main()
+{
+    EACH_RAY
+    {
+        gpu_shadow_ray job = load_shadow_ray(shadow_index(k));
+        vec4 ray = shadow_ray(load_light(job.light), job.origin);
+        ray_o[k] = job.origin;
+        ray_d[k] = ray.xyz;
+        ray_limit[k] = packet_index(k) < work.count ? ray.w : -1.0;
+        ray_inv_a[k] = ex_rcp(ex_dot(ray.xyz, ray.xyz));
+        ray_depth[k] = uvec3(0u);
+        if (has_world_tree)
+            slab_ready(k, frame.reach);
+    }
+    VISIT_KIND(has_planes, false, frame.planes, shadow_plane(i, valid))
+    VISIT_KIND(has_spheres, has_sphere_tree, frame.spheres, shadow_sphere(i, valid))
+    VISIT_KIND(has_flats, has_flat_tree, frame.flats, shadow_flat(i, valid))
+    VISIT_KIND(has_ellipsoids, has_ellipsoid_tree, frame.ellipsoids, shadow_solid(i, valid))
+    VISIT_KIND(has_boxes, has_box_tree, frame.boxes, shadow_solid(i, valid))
+    VISIT_KIND(has_cones, has_cone_tree, frame.cones, shadow_solid(i, valid))
+    if (has_instances) {
+        EACH_RAY keep_world(k);
+        VISIT_KIND(true, has_instance_tree, frame.instances, shadow_instance(i, valid))
+    }
+    uint count = 0u, blocked = 0u;
+    for (uint k = 0u;;) {
+        bool wanted = packet_index(k) < work.count;
+        gpu_shadow_ray job = load_shadow_ray(shadow_index(k));
+        vec3 value = job.value;
+        if (has_transparent)
+            value = value * light_left(depth_of(k));
+        bool lit = wanted && ((dark >> (k & 31u)) & 1u) == 0u;
+        film_sum sum = film_zero();
+        film_accumulate(sum, value);
+        if (lit)
+            film_add(job.pixel, sum);
+        count += uint(wanted);
+        blocked += uint(wanted) & (met >> (k & 31u)) & 1u;
+        k++;
+        if (k >= uint(RAYS))
+            break;
+    }
+    if (joint) {
+        COUNT(counters.shadow, count)
+        COUNT(counters.shadow_hits, blocked)
+    } else {
+        atomicAdd(counters.shadow, count);
+        atomicAdd(counters.shadow_hits, blocked);
+    }
+    if (!finished)
+        atomicAdd(counters.unfinished, 1u);
+}

@@ -1,0 +1,64 @@
+/* What the files that pack objects share. */
+#ifndef LR_RENDER_PACK_INTERNAL_H
+#define LR_RENDER_PACK_INTERNAL_H
+
+#include "bvh/bvh.h"
+#include "render/pack.h"
+
+/* In scenes with trees, a kind with more members than this has one. */
+#define LR_LISTED_MAX 6
+
+/* In the order of the primitives' numbers; LR_SPEC_SPHERES + kind tells whether there are any, and
+ * LR_SPEC_SPHERE_TREE + kind whether they have a tree. Meshes are not in these lists. */
+typedef enum lr_list_kind {
+    LR_SPHERES,
+    LR_FLATS,
+    LR_ELLIPSOIDS,
+    LR_BOXES,
+    LR_CONES,
+    LR_PLANES,
+    LR_LIST_COUNT,
+    LR_MESHES,
+} lr_list_kind;
+
+typedef struct lr_primitive {
+    union {
+        struct gpu_sphere sphere;
+        struct gpu_plane plane;
+        struct gpu_flat flat;
+        struct gpu_solid solid;
+    } record;
+    lr_list_kind list;
+    bool encloses; /* a medium, if its material transmits */
+    bool sided;    /* has a front and a back */
+    vec4 ball;     /* holds it, if it is bounded: centre, radius squared */
+    lr_bvh_box box;
+} lr_primitive;
+
+lr_transform lr_pack_inverse(const lr_transform *t);
+vec4 lr_pack_row(const double row[4], double scale);
+
+/* pack_shapes.c. False when the object is too thin. */
+bool lr_pack_shape(const lr_scene *scene, const lr_object *object, lr_primitive *out);
+
+/* Whether a point lies inside a solid primitive, in double from the object's own description. */
+bool lr_pack_contains(const lr_object *object, lr_vec3 point);
+
+/* pack_lists.c: the records kind by kind, behind them the balls around the bounded ones or the
+ * trees. Planes come last. */
+lr_status lr_pack_lists(const lr_primitive *primitives, uint32_t count, lr_packed_scene *packed,
+                        lr_error *error);
+
+/* Packs a hierarchy's nodes; the number of its first primitive is `first`. Returns the row of the
+ * root, or UINT32_MAX when memory is out. */
+uint32_t lr_pack_tree(lr_packed_scene *packed, const lr_bvh *bvh, uint32_t first);
+
+/* Widens *reach, the greatest coordinate in a tree, by a box. */
+void lr_pack_reach(float *reach, const lr_bvh_box *box);
+
+/* pack_meshes.c: the meshes, and every object that shows one as an instance. instances[i] becomes
+ * the instance of object i. `flags` are the objects'. */
+lr_status lr_pack_meshes(const lr_scene *scene, const uint32_t *flags, uint32_t *instances,
+                         lr_packed_scene *packed, lr_error *error);
+
+#endif

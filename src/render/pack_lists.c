@@ -1,0 +1,192 @@
+/* The primitives kind by kind, in lists or in trees. */
+#include "render/pack_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+/* Up to so many bounded primitives, and no mesh, every ray tests the balls of all of them. */
+#define UNSORTED_MAX 32
+
+#define LEAF_SIZE 2
+#define TESTS_IN_TREES 48
+
+static const uint32_t rows_of[LR_LIST_COUNT] = {
+    [LR_SPHERES] = sizeof(struct gpu_sphere) / 16,   [LR_FLATS] = sizeof(struct gpu_flat) / 16,
+    [LR_ELLIPSOIDS] = sizeof(struct gpu_solid) / 16, [LR_BOXES] = sizeof(struct gpu_solid) / 16,
+    [LR_CONES] = sizeof(struct gpu_solid) / 16,      [LR_PLANES] = sizeof(struct gpu_plane) / 16,
+};
+
+static uint32_t leaf_reference(const lr_bvh_node *leaf, uint32_t first)
+{
+    return LR_NODE_LEAF | (uint32_t)(leaf->count - 1) << LR_NODE_COUNT_SHIFT | (first + leaf->link);
+}
+
+static vec3 pack_corner(const float corner[3])
+{
+    return (vec3){corner[0], corner[1], corner[2]};
+}
+
+/* A tree of one leaf has a root beside it all the same, whose other child no ray reaches. */
+static uint32_t pack_lone_leaf(lr_packed_scene *packed, const lr_bvh_node *leaf, uint32_t first)
+{
+    const vec3 nowhere = {3e15f, 3e15f, 3e15f};
+    struct gpu_node node = {
+        .min0 = pack_corner(leaf->min),
+        .child0 = leaf_reference(leaf, first),
+        .max0 = pack_corner(leaf->max),
+        .child1 = LR_NODE_LEAF | first,
+        .min1 = nowhere,
+        .max1 = nowhere,
+    };
+    return lr_pack_rows(packed, &node, LR_NODE_ROWS);
+}
+
+uint32_t lr_pack_tree(lr_packed_scene *packed, const lr_bvh *bvh, uint32_t first)
+{
+    const lr_bvh_node *nodes = bvh->nodes;
+    if (nodes[0].count)
+        return pack_lone_leaf(packed, &nodes[0], first);
+    uint32_t *rows = lr_alloc_large(bvh->node_count, sizeof *rows), inner = 0;
+    uint32_t root = packed->row_count;
+    if (!rows || !lr_pack_reserve(packed, (uint64_t)bvh->node_count / 2 * LR_NODE_ROWS)) {
+        free(rows);
+        return UINT32_MAX;
+    }
+    for (uint32_t i = 0; i < bvh->node_count; i++)
+        rows[i] = nodes[i].count ? leaf_reference(&nodes[i], first) : root + LR_NODE_ROWS * inner++;
+    for (uint32_t i = 0; i < bvh->node_count; i++) {
+        if (nodes[i].count)
+            continue;
+        const lr_bvh_node *left = &nodes[i + 1], *right = &nodes[nodes[i].link];
+        struct gpu_node node = {
+            .min0 = pack_corner(left->min),
+            .child0 = rows[i + 1],
+            .max0 = pack_corner(left->max),
+            .child1 = rows[nodes[i].link],
+            .min1 = pack_corner(right->min),
+            .max1 = pack_corner(right->max),
+        };
+        lr_pack_rows(packed, &node, LR_NODE_ROWS);
+    }
+    free(rows);
+    return root;
+}
+
+void lr_pack_reach(float *reach, const lr_bvh_box *box)
+{
+    for (int i = 0; i < 3; i++)
+        *reach = fmaxf(*reach, fmaxf(fabsf(box->min[i]), fabsf(box->max[i])));
+}
+
+/* A hierarchy over `count` members of a kind. */
+static lr_status build_tree(const lr_primitive *primitives, const uint32_t *members, uint32_t count,
+                            float *reach, lr_bvh **bvh, lr_error *error)
+{
+    lr_bvh_box *boxes = lr_alloc(count, sizeof *boxes);
+    if (!boxes)
+        return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's objects");
+    for (uint32_t i = 0; i < count; i++) {
+        boxes[i] = primitives[members[i]].box;
+        lr_pack_reach(reach, &boxes[i]);
+    }
+    lr_bvh_options options = {.leaf_size = LEAF_SIZE};
+    lr_status status = lr_bvh_create(boxes, count, &options, bvh, error);
+    free(boxes);
+    return status;
+}
+
+/* Packs the records of a kind: if it has many members in the order of the leaves of a tree, *bvh.
+ */
+static lr_status pack_kind(const lr_primitive *primitives, const uint32_t *members, uint32_t count,
+                           lr_list_kind kind, gpu_list *list, lr_bvh **bvh, lr_packed_scene *packed,
+                           lr_error *error)
+{
+    bool tree = packed->constants[LR_SPEC_TREES] && kind != LR_PLANES && count > LR_LISTED_MAX;
+    list->base = packed->row_count - rows_of[kind] * list->begin;
+    packed->constants[LR_SPEC_SPHERES + kind] = count > 0;
+    if (tree) {
+        float *reach = &packed->frame.reach;
+        lr_status status = build_tree(primitives, members, count, reach, bvh, error);
+        if (status)
+            return status;
+        packed->constants[LR_SPEC_SPHERE_TREE + kind] = 1;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        const lr_primitive *p = &primitives[members[tree ? (*bvh)->order[i] : i]];
+        if (lr_pack_rows(packed, &p->record, rows_of[kind]) == UINT32_MAX)
+            return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's objects");
+    }
+    return LR_OK;
+}
+
+static bool pack_balls(const lr_primitive *primitives, const uint32_t *sorted,
+                       lr_packed_scene *packed)
+{
+    packed->frame.balls = packed->row_count;
+    bool fits = true;
+    for (uint32_t i = 0; i < packed->frame.bounded && fits; i++)
+        fits = lr_pack_rows(packed, &primitives[sorted[i]].ball, 1) != UINT32_MAX;
+    return fits;
+}
+
+static lr_status pack_sorted(const lr_primitive *primitives, const uint32_t *sorted,
+                             const uint32_t *counts, lr_bvh **trees, lr_packed_scene *packed,
+                             lr_error *error)
+{
+    struct gpu_frame *frame = &packed->frame;
+    gpu_list *lists[LR_LIST_COUNT] = {&frame->spheres, &frame->flats, &frame->ellipsoids,
+                                      &frame->boxes,   &frame->cones, &frame->planes};
+    uint32_t number = 0;
+    for (lr_list_kind kind = LR_SPHERES; kind < LR_LIST_COUNT; kind++) {
+        *lists[kind] = (gpu_list){.begin = number, .end = number + counts[kind]};
+        lr_status status = pack_kind(primitives, sorted + number, counts[kind], kind, lists[kind],
+                                     &trees[kind], packed, error);
+        if (status)
+            return status;
+        number += counts[kind];
+    }
+    /* The solids' records stand together, so they have one base. */
+    frame->solids =
+        (gpu_list){frame->ellipsoids.base, frame->ellipsoids.begin, frame->cones.end, 0};
+    frame->bounded = frame->planes.begin;
+    bool fits = true;
+    for (lr_list_kind kind = LR_SPHERES; kind < LR_LIST_COUNT && fits; kind++)
+        if (trees[kind]) {
+            lists[kind]->nodes = lr_pack_tree(packed, trees[kind], lists[kind]->begin);
+            fits = lists[kind]->nodes != UINT32_MAX;
+        }
+    if (fits && !packed->constants[LR_SPEC_TREES])
+        fits = pack_balls(primitives, sorted, packed);
+    if (!fits)
+        return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's objects");
+    return LR_OK;
+}
+
+lr_status lr_pack_lists(const lr_primitive *primitives, uint32_t count, lr_packed_scene *packed,
+                        lr_error *error)
+{
+    uint32_t counts[LR_MESHES + 1] = {0}, begin[LR_MESHES + 1], at = 0;
+    for (uint32_t i = 0; i < count; i++)
+        counts[primitives[i].list]++;
+    for (int kind = 0; kind <= LR_MESHES; kind++) {
+        begin[kind] = at;
+        at += counts[kind];
+    }
+    uint32_t bounded = at - counts[LR_PLANES] - counts[LR_MESHES];
+    packed->constants[LR_SPEC_TREES] = counts[LR_MESHES] > 0 || bounded > UNSORTED_MAX;
+    packed->tests_per_ray = packed->constants[LR_SPEC_TREES] ? TESTS_IN_TREES : count;
+    uint32_t *sorted = lr_alloc(count, sizeof *sorted);
+    if (!sorted)
+        return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's objects");
+    for (uint32_t i = 0; i < count; i++)
+        sorted[begin[primitives[i].list]++] = i;
+    lr_bvh *trees[LR_LIST_COUNT] = {NULL};
+    lr_status status = pack_sorted(primitives, sorted, counts, trees, packed, error);
+    for (int kind = 0; kind < LR_LIST_COUNT; kind++)
+        lr_bvh_destroy(trees[kind]);
+    free(sorted);
+    return status;
+}
