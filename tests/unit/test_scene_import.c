@@ -55,8 +55,8 @@ static void test_gltf_material(void **state)
     assert_near(m->diffuse.x, 0.5, 1e-12);
     /* 2 / 0.25^4 - 2 */
     assert_near(m->shininess, 510, 1e-9);
-    assert_near(m->specular.z, 1, 1e-12);
-    assert_near(m->specular.x, 0.5, 1e-12);
+    assert_near(m->specular.z, 0.75, 1e-12);
+    assert_near(m->specular.x, 0.375, 1e-12);
     assert_near(m->emission.x, 3, 1e-12);
     assert_near(m->emission.y, 1.5, 1e-12);
     assert_near(m->alpha_cutoff, 0.3, 1e-12);
