@@ -208,6 +208,9 @@ typedef struct lr_render_options {
     uint32_t tile_size;  /* pixels along a tile's side */
     uint32_t chunk_rays; /* rays handed to the device at once */
     bool storage_loads;  /* read the scene through storage buffers, not texel buffers */
+    bool single_rays;    /* every ray goes through the trees by itself, not in packets */
+    uint32_t leaf_size;  /* most primitives in a leaf of a tree, 1 to 8 */
+    uint32_t threads;    /* that build trees */
     /* Called between dispatches from the calling thread with the fraction done, 0 to 1; returning
      * false stops the render with LR_ERROR_INTERRUPTED. */
     bool (*progress)(void *user, double fraction);

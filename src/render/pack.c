@@ -176,7 +176,7 @@ static lr_status pack_lights(const lr_scene *scene, const lr_light *fallback,
 lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_packed_scene *packed,
                         lr_error *error)
 {
-    *packed = (lr_packed_scene){0};
+    *packed = (lr_packed_scene){.leaf_size = settings->leaf_size, .threads = settings->threads};
     const lr_camera *camera = settings->camera;
     lr_vec3 forward = lr_vec3_normalize(lr_vec3_sub(camera->to, camera->from));
     lr_vec3 right = lr_vec3_normalize(lr_vec3_cross(forward, camera->up));

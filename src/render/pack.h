@@ -12,13 +12,15 @@ typedef struct lr_settings {
     uint32_t width, height, samples, depth, seed;
     uint32_t crop_x, crop_y, crop_width, crop_height;
     const lr_camera *camera;
+    uint32_t leaf_size, threads; /* of the builder of trees; 0: as suits them */
 } lr_settings;
 
 typedef struct lr_packed_scene {
     vec4 *rows; /* owned */
     uint32_t row_count, row_capacity;
     uint32_t light_count;
-    uint32_t tests_per_ray; /* about so many primitives does a ray meet on its way */
+    uint32_t tests_per_ray;      /* about so many primitives does a ray meet on its way */
+    uint32_t leaf_size, threads; /* of lr_settings */
     struct gpu_frame frame;
     uint32_t constants[LR_SPEC_COUNT]; /* but for those that only the device decides */
 } lr_packed_scene;

@@ -53,6 +53,10 @@ lr_status lr_pack_lists(const lr_primitive *primitives, uint32_t count, lr_packe
  * root, or UINT32_MAX when memory is out. */
 uint32_t lr_pack_tree(lr_packed_scene *packed, const lr_bvh *bvh, uint32_t first);
 
+/* A hierarchy with leaves of at most `leaf_size`, unless the settings say otherwise. */
+lr_status lr_pack_build(const lr_packed_scene *packed, const lr_bvh_box *boxes, uint32_t count,
+                        uint32_t leaf_size, lr_bvh **bvh, lr_error *error);
+
 /* Widens *reach, the greatest coordinate in a tree, by a box. */
 void lr_pack_reach(float *reach, const lr_bvh_box *box);
 

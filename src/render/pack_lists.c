@@ -81,19 +81,26 @@ void lr_pack_reach(float *reach, const lr_bvh_box *box)
         *reach = fmaxf(*reach, fmaxf(fabsf(box->min[i]), fabsf(box->max[i])));
 }
 
+lr_status lr_pack_build(const lr_packed_scene *packed, const lr_bvh_box *boxes, uint32_t count,
+                        uint32_t leaf_size, lr_bvh **bvh, lr_error *error)
+{
+    lr_bvh_options options = {.leaf_size = packed->leaf_size ? packed->leaf_size : leaf_size,
+                              .threads = packed->threads};
+    return lr_bvh_create(boxes, count, &options, bvh, error);
+}
+
 /* A hierarchy over `count` members of a kind. */
-static lr_status build_tree(const lr_primitive *primitives, const uint32_t *members, uint32_t count,
-                            float *reach, lr_bvh **bvh, lr_error *error)
+static lr_status build_tree(lr_packed_scene *packed, const lr_primitive *primitives,
+                            const uint32_t *members, uint32_t count, lr_bvh **bvh, lr_error *error)
 {
     lr_bvh_box *boxes = lr_alloc(count, sizeof *boxes);
     if (!boxes)
         return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's objects");
     for (uint32_t i = 0; i < count; i++) {
         boxes[i] = primitives[members[i]].box;
-        lr_pack_reach(reach, &boxes[i]);
+        lr_pack_reach(&packed->frame.reach, &boxes[i]);
     }
-    lr_bvh_options options = {.leaf_size = LEAF_SIZE};
-    lr_status status = lr_bvh_create(boxes, count, &options, bvh, error);
+    lr_status status = lr_pack_build(packed, boxes, count, LEAF_SIZE, bvh, error);
     free(boxes);
     return status;
 }
@@ -108,8 +115,7 @@ static lr_status pack_kind(const lr_primitive *primitives, const uint32_t *membe
     list->base = packed->row_count - rows_of[kind] * list->begin;
     packed->constants[LR_SPEC_SPHERES + kind] = count > 0;
     if (tree) {
-        float *reach = &packed->frame.reach;
-        lr_status status = build_tree(primitives, members, count, reach, bvh, error);
+        lr_status status = build_tree(packed, primitives, members, count, bvh, error);
         if (status)
             return status;
         packed->constants[LR_SPEC_SPHERE_TREE + kind] = 1;

@@ -7,12 +7,16 @@
 
 #include "base/memory.h"
 
+/* Small leaves are faster, great ones save memory where there are many triangles. */
 #define LEAF_SIZE 2
+#define LEAF_SIZE_OF_MANY 4
+#define MANY 200000
 
 /* A triangle on its way into a tree. */
 typedef struct facet {
     float corners[9];
     uint32_t mesh, triangle, object;
+    bool mirrored;
 } facet;
 
 /* What all the triangles' records come from. */
@@ -21,6 +25,7 @@ typedef struct mesh_packing {
     const uint32_t *object_flags;
     lr_packed_scene *packed;
     uint32_t *users;             /* of each mesh: how many objects show it */
+    uint32_t *shown_by;          /* the last of them */
     uint32_t *vertex_rows;       /* where its vertices' rows begin, if it has any */
     struct gpu_corners *corners; /* of all triangles, in the order of their numbers */
     struct gpu_instance *instances;
@@ -63,6 +68,17 @@ static uint32_t pack_color(const float *c)
     return bits;
 }
 
+/* The vertex's normal, in the world if the mesh is brought there by the inverse of `to_mesh`. */
+static uint32_t vertex_normal(const lr_mesh *mesh, uint32_t vertex, const lr_transform *to_mesh)
+{
+    const float *n = &mesh->normals[3 * (size_t)vertex];
+    if (!to_mesh)
+        return pack_normal(n);
+    lr_vec3 turned = {n[0], n[1], n[2]};
+    turned = lr_vec3_normalize(lr_transform_normal(to_mesh, turned));
+    return pack_normal((const float[3]){(float)turned.x, (float)turned.y, (float)turned.z});
+}
+
 static bool pack_vertices(mesh_packing *m)
 {
     for (uint32_t i = 0; i < m->scene->mesh_count; i++) {
@@ -73,9 +89,12 @@ static bool pack_vertices(mesh_packing *m)
         m->packed->constants[LR_SPEC_CORNERS] = 1;
         if (!lr_pack_reserve(m->packed, mesh->vertex_count))
             return false;
+        const lr_object *object = &m->scene->objects[m->shown_by[i]];
+        bool in_world = m->users[i] == 1 && object->transformed;
+        lr_transform to_mesh = lr_pack_inverse(&object->to_world);
         for (uint32_t v = 0; v < mesh->vertex_count; v++) {
             struct gpu_vertex vertex = {
-                .normal = mesh->normals ? pack_normal(&mesh->normals[3 * (size_t)v]) : 0,
+                .normal = mesh->normals ? vertex_normal(mesh, v, in_world ? &to_mesh : NULL) : 0,
                 .u = mesh->uvs ? mesh->uvs[2 * (size_t)v] : 0,
                 .v = mesh->uvs ? mesh->uvs[2 * (size_t)v + 1] : 0,
                 .color = mesh->colors ? pack_color(&mesh->colors[3 * (size_t)v]) : 0,
@@ -86,13 +105,30 @@ static bool pack_vertices(mesh_packing *m)
     return true;
 }
 
+static bool is_mirrored(const lr_transform *t)
+{
+    lr_vec3 x = {t->m[0][0], t->m[1][0], t->m[2][0]}, y = {t->m[0][1], t->m[1][1], t->m[2][1]};
+    lr_vec3 z = {t->m[0][2], t->m[1][2], t->m[2][2]};
+    return lr_vec3_dot(lr_vec3_cross(x, y), z) < 0;
+}
+
+/* The vertices of a triangle, counter-clockwise as seen from outside after the transform. */
+static void facet_vertices(const lr_mesh *mesh, uint32_t triangle, bool mirrored,
+                           uint32_t vertices[3])
+{
+    const uint32_t *v = &mesh->triangles[3 * (size_t)triangle];
+    vertices[0] = v[0];
+    vertices[1] = v[mirrored ? 2 : 1];
+    vertices[2] = v[mirrored ? 1 : 2];
+}
+
 /* The corners of a triangle under a transform; false when they span no area. */
-static bool place_facet(const lr_mesh *mesh, uint32_t triangle, const lr_transform *t,
+static bool place_facet(const lr_mesh *mesh, const uint32_t vertices[3], const lr_transform *t,
                         float corners[9])
 {
     lr_vec3 p[3];
     for (int i = 0; i < 3; i++) {
-        const float *v = &mesh->positions[3 * (size_t)mesh->triangles[3 * (size_t)triangle + i]];
+        const float *v = &mesh->positions[3 * (size_t)vertices[i]];
         p[i] = (lr_vec3){v[0], v[1], v[2]};
         if (t)
             p[i] = lr_transform_point(t, p[i]);
@@ -112,10 +148,13 @@ static uint32_t add_facets(const mesh_packing *m, uint32_t mesh, uint32_t object
                            const lr_transform *t, facet *facets, uint32_t count)
 {
     const lr_mesh *from = &m->scene->meshes[mesh];
+    bool mirrored = t && is_mirrored(t);
     for (uint32_t i = 0; i < from->triangle_count; i++) {
         facet *f = &facets[count];
-        *f = (facet){.mesh = mesh, .triangle = i, .object = object};
-        count += place_facet(from, i, t, f->corners);
+        uint32_t vertices[3];
+        facet_vertices(from, i, mirrored, vertices);
+        *f = (facet){.mesh = mesh, .triangle = i, .object = object, .mirrored = mirrored};
+        count += place_facet(from, vertices, t, f->corners);
     }
     return count;
 }
@@ -150,8 +189,8 @@ static bool pack_facet(mesh_packing *m, const facet *f, bool shared)
         .flags = attribute_flags(mesh) | (shared ? 0 : m->object_flags[f->object]),
     };
     if (m->corners && has_attributes(mesh)) {
-        const uint32_t *v = &mesh->triangles[3 * (size_t)f->triangle];
-        uint32_t row = m->vertex_rows[f->mesh];
+        uint32_t v[3], row = m->vertex_rows[f->mesh];
+        facet_vertices(mesh, f->triangle, f->mirrored, v);
         m->corners[m->triangle_count] = (struct gpu_corners){row + v[0], row + v[1], row + v[2], 0};
     }
     m->triangle_count++;
@@ -159,8 +198,8 @@ static bool pack_facet(mesh_packing *m, const facet *f, bool shared)
 }
 
 /* A tree over facets, whose records must come right behind those of the trees before. */
-static lr_status build_facets(const facet *facets, uint32_t count, float *reach, lr_bvh **bvh,
-                              lr_error *error)
+static lr_status build_facets(const lr_packed_scene *packed, const facet *facets, uint32_t count,
+                              float *reach, lr_bvh **bvh, lr_error *error)
 {
     lr_bvh_box *boxes = lr_alloc_large(count, sizeof *boxes);
     if (!boxes)
@@ -169,8 +208,8 @@ static lr_status build_facets(const facet *facets, uint32_t count, float *reach,
         boxes[i] = box_of(&facets[i]);
         lr_pack_reach(reach, &boxes[i]);
     }
-    lr_bvh_options options = {.leaf_size = LEAF_SIZE};
-    lr_status status = lr_bvh_create(boxes, count, &options, bvh, error);
+    uint32_t leaf_size = count > MANY ? LEAF_SIZE_OF_MANY : LEAF_SIZE;
+    lr_status status = lr_pack_build(packed, boxes, count, leaf_size, bvh, error);
     free(boxes);
     return status;
 }
@@ -192,7 +231,7 @@ static lr_status pack_facets(mesh_packing *m, const facet *facets, uint32_t coun
                              mesh_tree *tree, lr_error *error)
 {
     tree->first = m->packed->frame.triangles.begin + m->triangle_count;
-    lr_status status = build_facets(facets, count, &tree->reach, &tree->bvh, error);
+    lr_status status = build_facets(m->packed, facets, count, &tree->reach, &tree->bvh, error);
     if (status)
         return status;
     if (!lr_pack_reserve(m->packed, 3ull * count))
@@ -324,7 +363,7 @@ static lr_status pack_instances(mesh_packing *m, const lr_bvh_box *boxes, uint32
     for (uint32_t i = 0; i < count && tree; i++)
         lr_pack_reach(&m->packed->frame.reach, &boxes[i]);
     if (tree)
-        status = lr_bvh_create(boxes, count, &(lr_bvh_options){.leaf_size = 1}, &bvh, error);
+        status = lr_pack_build(m->packed, boxes, count, 1, &bvh, error);
     uint32_t *place = lr_alloc(count, sizeof *place);
     if (!status && !place)
         status = no_memory(error);
@@ -396,22 +435,26 @@ lr_status lr_pack_meshes(const lr_scene *scene, const uint32_t *flags, uint32_t 
         .object_flags = flags,
         .packed = packed,
         .users = lr_alloc(scene->mesh_count, sizeof *m.users),
+        .shown_by = lr_alloc(scene->mesh_count, sizeof *m.shown_by),
         .vertex_rows = lr_alloc(scene->mesh_count, sizeof *m.vertex_rows),
         .instances = lr_alloc(scene->object_count + 1ull, sizeof *m.instances),
     };
     mesh_tree *trees = lr_alloc(scene->mesh_count + 1ull, sizeof *trees);
     lr_status status = LR_OK;
-    if (!m.users || !m.vertex_rows || !m.instances || !trees)
+    if (!m.users || !m.shown_by || !m.vertex_rows || !m.instances || !trees)
         status = no_memory(error);
     for (uint32_t i = 0; i < scene->object_count && !status; i++)
-        if (scene->objects[i].kind == LR_MESH)
+        if (scene->objects[i].kind == LR_MESH) {
             m.users[scene->objects[i].mesh]++;
+            m.shown_by[scene->objects[i].mesh] = i;
+        }
     if (!status)
         status = pack_all(&m, trees, instances, error);
     for (uint32_t i = 0; trees && i <= scene->mesh_count; i++)
         lr_bvh_destroy(trees[i].bvh);
     free(trees);
     free(m.users);
+    free(m.shown_by);
     free(m.vertex_rows);
     free(m.instances);
     free(m.corners);

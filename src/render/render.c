@@ -43,6 +43,8 @@ static lr_status settle(const lr_scene *scene, const lr_render_options *options,
         .crop_y = options->crop.y,
         .crop_width = options->crop.width,
         .crop_height = options->crop.height,
+        .leaf_size = options->leaf_size,
+        .threads = options->threads,
     };
     if (s->width > 32768 || s->height > 32768)
         return lr_fail(error, LR_ERROR_ARGUMENT, "the size %ux%u is over 32768 (--size)", s->width,

@@ -74,7 +74,8 @@ static void plan(lr_wavefront *w, const lr_render_options *options)
     w->lights_at_once = at_most(at_once, at_least(lights, 1));
     w->shadow_room = 2 * w->chunk_rays * lights_a_segment;
     /* Where a subgroup is one batch its rays go through a tree together. */
-    w->rays_at_once = software && w->device->shuffle_size == LR_BATCH ? PACKET_RAYS : 1;
+    bool packets = software && w->device->shuffle_size == LR_BATCH && !options->single_rays;
+    w->rays_at_once = packets ? PACKET_RAYS : 1;
 }
 
 /* Bytes of a queue that has room for the children of one chunk. */
