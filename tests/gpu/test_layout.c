@@ -259,7 +259,7 @@ enum {
     OP_MEMBER_DECORATE = 72,
     DECORATION_ARRAY_STRIDE = 6,
     DECORATION_OFFSET = 35,
-    IDS_MAX = 65536,
+    IDS_MAX = 131072,
 };
 
 typedef struct module {

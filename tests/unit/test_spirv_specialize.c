@@ -18,7 +18,7 @@ enum {
     OP_DECORATE = 71,
     OP_BRANCH_CONDITIONAL = 250,
     DECORATION_SPEC_ID = 1,
-    IDS_MAX = 65536,
+    IDS_MAX = 131072,
 };
 
 static const struct {
