@@ -59,7 +59,7 @@ typedef struct vec4 {
 #define LR_SPEC_SPOTS 15
 #define LR_SPEC_SHUFFLE 16            /* share loads within a subgroup */
 #define LR_SPEC_TEXEL_QUEUES 17       /* as LR_SPEC_TEXEL_LOADS, for the queues */
-#define LR_SPEC_TRANSPARENT_PLANES 18 /* ... that is a plane */
+#define LR_SPEC_TRANSPARENT_PLANES 18 /* ... that is a plane; or one has holes */
 #define LR_SPEC_TREES 19              /* nearest and shadow hits are found by kernels of their own */
 #define LR_SPEC_SPHERE_TREE 20        /* a kind that has many members is found by its tree */
 #define LR_SPEC_FLAT_TREE 21          /* in the order of the kinds above */
@@ -309,7 +309,7 @@ struct gpu_texture {
     uint texels; /* row of the first: four in a row, a byte for red, green, blue and alpha from
                     the lowest bits up; or floats, one in a row, with alpha 1 */
     uint size;   /* width, height << 16 */
-    uint curve;  /* row b from here: the linear value of byte b, and b / 255 */
+    uint curve;  /* row b from here: the linear value of byte b */
     uint flags;  /* wrap of u, wrap of v << 2, LR_GPU_TEXTURE_FLOATS */
 };
 LR_ROWS(gpu_texture, 1)

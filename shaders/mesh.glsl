@@ -27,6 +27,18 @@ gpu_vertex load_vertex(uint row)
     return gpu_vertex(a.x, uintBitsToFloat(a.y), uintBitsToFloat(a.z), a.w);
 }
 
+// The texture coordinates of triangle i where its corners have these weights; 0 if its mesh has none.
+vec2 mesh_uv(uint i, uint flags, vec3 weight)
+{
+    vec2 uv = vec2(0.0);
+    if (has_corners && (flags & LR_FLAG_UV) != 0u) {
+        uvec4 corners = scene_row(frame.corners + i - frame.triangles.begin);
+        gpu_vertex a = load_vertex(corners.x), b = load_vertex(corners.y), c = load_vertex(corners.z);
+        uv = vec2(a.u, a.v) * weight.x + vec2(b.u, b.v) * weight.y + vec2(c.u, c.v) * weight.z;
+    }
+    return uv;
+}
+
 vec3 instance_point(gpu_instance s, vec3 p)
 {
     return vec3(ex_dot(s.row0.xyz, p) + s.row0.w, ex_dot(s.row1.xyz, p) + s.row1.w,

@@ -4,6 +4,7 @@
 #define SHADOW_GLSL
 
 #include "candidates.glsl"
+#include "hole.glsl"
 #include "intersect.glsl"
 #include "obstacle.glsl"
 
@@ -82,26 +83,37 @@ bool dim(inout shadow_rays rays, uint l, vec2 crossing, float t_max, uint object
 bool dim_plane(inout shadow_rays rays, uint l, uint i, vec3 o, vec3 d, float t_max)
 {
     gpu_plane p = load_plane(i);
-    return dim(rays, l, intersect_plane(o, d, p.normal, p.offset), t_max, p.object, p.flags);
+    vec2 crossing = intersect_plane(o, d, p.normal, p.offset);
+    if (has_cutouts)
+        crossing = projected_crossings(crossing, p.object, o, d);
+    return dim(rays, l, crossing, t_max, p.object, p.flags);
 }
 
 bool dim_sphere(inout shadow_rays rays, uint l, uint i, vec3 o, vec3 d, float t_max)
 {
     gpu_sphere s = load_sphere(i);
-    float inv_a = ex_rcp(ex_dot(d, d));
-    return dim(rays, l, intersect_sphere(o, d, inv_a, s), t_max, s.object, s.flags);
+    vec2 crossing = intersect_sphere(o, d, ex_rcp(ex_dot(d, d)), s);
+    if (has_cutouts)
+        crossing = projected_crossings(crossing, s.object, o, d);
+    return dim(rays, l, crossing, t_max, s.object, s.flags);
 }
 
 bool dim_flat(inout shadow_rays rays, uint l, uint i, vec3 o, vec3 d, float t_max)
 {
     gpu_flat f = load_flat(i);
-    return dim(rays, l, intersect_flat(o, d, f), t_max, f.object, f.flags);
+    vec2 crossing = intersect_flat(o, d, f);
+    if (has_cutouts)
+        crossing = flat_crossing(crossing, f, o, d);
+    return dim(rays, l, crossing, t_max, f.object, f.flags);
 }
 
 bool dim_solid(inout shadow_rays rays, uint l, uint i, vec3 o, vec3 d, float t_max)
 {
     gpu_solid s = load_solid(i);
-    return dim(rays, l, intersect_solid(o, d, s, i), t_max, s.object, s.flags);
+    vec2 crossing = intersect_solid(o, d, s, i);
+    if (has_cutouts)
+        crossing = solid_crossings(crossing, s, has_boxes && is_in(frame.boxes, i), o, d);
+    return dim(rays, l, crossing, t_max, s.object, s.flags);
 }
 
 // The first component that is not 0, or 3.

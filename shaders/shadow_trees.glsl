@@ -2,6 +2,7 @@
 #include "gpu_layout.h"
 #include "bindings.glsl"
 #include "film.glsl"
+#include "hole.glsl"
 #include "instance.glsl"
 #include "light.glsl"
 #include "obstacle.glsl"
@@ -51,35 +52,70 @@ void shadow_sphere(uint i, bool valid)
 {
     gpu_sphere s = joint_sphere(i);
     obstacle by = joint_obstacle(valid, s.object, s.flags);
-    EACH_RAY dim(k, by, intersect_sphere(ray_o[k], ray_d[k], ray_inv_a[k], s));
+    EACH_RAY
+    {
+        vec2 crossing = intersect_sphere(ray_o[k], ray_d[k], ray_inv_a[k], s);
+        if (has_cutouts)
+            crossing = projected_crossings(crossing, s.object, ray_o[k], ray_d[k]);
+        dim(k, by, crossing);
+    }
 }
 
 void shadow_flat(uint i, bool valid)
 {
     gpu_flat f = joint_flat(i);
     obstacle by = joint_obstacle(valid, f.object, f.flags);
-    EACH_RAY dim(k, by, intersect_flat(ray_o[k], ray_d[k], f));
+    EACH_RAY
+    {
+        vec2 crossing = intersect_flat(ray_o[k], ray_d[k], f);
+        if (has_cutouts)
+            crossing = flat_crossing(crossing, f, ray_o[k], ray_d[k]);
+        dim(k, by, crossing);
+    }
 }
 
 void shadow_solid(uint i, bool valid)
 {
     gpu_solid s = joint_solid(i);
     obstacle by = joint_obstacle(valid, s.object, s.flags);
-    EACH_RAY dim(k, by, intersect_solid(ray_o[k], ray_d[k], s, i));
+    bool box = has_boxes && is_in(frame.boxes, i);
+    EACH_RAY
+    {
+        vec2 crossing = intersect_solid(ray_o[k], ray_d[k], s, i);
+        if (has_cutouts)
+            crossing = solid_crossings(crossing, s, box, ray_o[k], ray_d[k]);
+        dim(k, by, crossing);
+    }
 }
 
 void shadow_plane(uint i, bool valid)
 {
     gpu_plane p = load_plane(i);
     obstacle by = joint_obstacle(valid, p.object, p.flags);
-    EACH_RAY dim(k, by, intersect_plane(ray_o[k], ray_d[k], p.normal, p.offset));
+    EACH_RAY
+    {
+        vec2 crossing = intersect_plane(ray_o[k], ray_d[k], p.normal, p.offset);
+        if (has_cutouts)
+            crossing = projected_crossings(crossing, p.object, ray_o[k], ray_d[k]);
+        dim(k, by, crossing);
+    }
 }
 
 void shadow_triangle(uint i, bool valid, gpu_instance place)
 {
     gpu_triangle f = joint_triangle(i);
     obstacle by = joint_obstacle(valid, f.object + place.object, f.flags | place.flags);
-    EACH_RAY dim(k, by, vec2(intersect_triangle(ray_o[k], mesh_ray[k], f).t, -1.0));
+    uint material = 0u;
+    if (has_cutouts)
+        material = load_object_ids(f.object + place.object).x;
+    EACH_RAY
+    {
+        triangle_hit met = intersect_triangle(ray_o[k], mesh_ray[k], f);
+        bool hole = false;
+        if (has_cutouts)
+            hole = cut_out(material, mesh_uv(i, f.flags, met.weight));
+        dim(k, by, vec2(mix(met.t, -1.0, hole), -1.0));
+    }
 }
 
 void shadow_instance(uint i, bool valid)

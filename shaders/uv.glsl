@@ -11,7 +11,7 @@ vec2 flat_uv(gpu_flat f, vec3 p)
 {
     float u = ex_dot(f.u, p) + f.u_offset, v = ex_dot(f.v, p) + f.v_offset;
     bool triangle = (f.flags & LR_FLAG_TRIANGLE) != 0u;
-    return triangle ? vec2(u, 1.0 - v) : vec2(0.5 + 0.5 * u, 0.5 - 0.5 * v);
+    return mix(vec2(0.5 + 0.5 * u, 0.5 - 0.5 * v), vec2(u, 1.0 - v), bvec2(triangle));
 }
 
 // The face with normal n of the box |x|, |y|, |z| <= 1 at the point p, upright with +y up; above, -z is

@@ -114,7 +114,8 @@ static void note_use(uint32_t *constants, lr_list_kind list, uint32_t flags)
     uint32_t casts_light = LR_FLAG_SHADOW | LR_FLAG_TRANSPARENT;
     bool transparent = (flags & casts_light) == casts_light;
     constants[LR_SPEC_TRANSPARENT] |= transparent;
-    constants[LR_SPEC_TRANSPARENT_PLANES] |= transparent && list == LR_PLANES;
+    constants[LR_SPEC_TRANSPARENT_PLANES] |=
+        list == LR_PLANES && (transparent || constants[LR_SPEC_CUTOUTS]);
     constants[LR_SPEC_ONE_SIDED] |= (flags & LR_FLAG_ONE_SIDED) != 0;
 }
 

@@ -19,11 +19,11 @@ lr_status lr_pack_texture_records(const lr_scene *scene, lr_packed_scene *packed
     return LR_OK;
 }
 
-/* The linear value of each byte, the same as of colours in a scene, and its share of 255. */
+/* The linear value of each byte, the same as of colours in a scene. */
 static bool pack_curve(lr_packed_scene *packed)
 {
     for (unsigned i = 0; i < 256; i++) {
-        vec4 row = {.x = (float)lr_srgb_to_linear(i), .y = (float)(i / 255.0)};
+        vec4 row = {.x = (float)lr_srgb_to_linear(i)};
         if (lr_pack_rows(packed, &row, 1) == UINT32_MAX)
             return false;
     }

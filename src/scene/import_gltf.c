@@ -135,12 +135,22 @@ static json_t *keep(const json_t *object, const char *const *keys)
     return kept;
 }
 
-static json_t *reduce_primitive(const json_t *primitive)
+/* Whether the accessor holds floats: assimp copies the bytes of integers as if they were. */
+static bool has_floats(const json_t *document, const json_t *accessor)
+{
+    const json_t *list = json_object_get(document, "accessors");
+    const json_t *item = json_array_get(list, (size_t)json_integer_value(accessor));
+    return json_integer_value(json_object_get(item, "componentType")) == 5126;
+}
+
+static json_t *reduce_primitive(const json_t *document, const json_t *primitive)
 {
     static const char *const keys[] = {"indices", "material", "mode", NULL};
     static const char *const attributes[] = {"POSITION", "NORMAL", "TEXCOORD_0", "COLOR_0", NULL};
     json_t *reduced = keep(primitive, keys);
     json_t *kept = keep(json_object_get(primitive, "attributes"), attributes);
+    if (kept && !has_floats(document, json_object_get(kept, "TEXCOORD_0")))
+        json_object_del(kept, "TEXCOORD_0");
     if (!reduced || !kept || json_object_set_new(reduced, "attributes", kept)) {
         if (!reduced)
             json_decref(kept);
@@ -150,13 +160,14 @@ static json_t *reduce_primitive(const json_t *primitive)
     return reduced;
 }
 
-static json_t *reduce_mesh(const json_t *mesh)
+static json_t *reduce_mesh(const json_t *document, const json_t *mesh)
 {
     static const char *const keys[] = {"name", NULL};
     const json_t *primitives = json_object_get(mesh, "primitives");
     json_t *reduced = keep(mesh, keys), *list = json_array();
     for (size_t i = 0; reduced && list && i < json_array_size(primitives); i++) {
-        if (json_array_append_new(list, reduce_primitive(json_array_get(primitives, i)))) {
+        if (json_array_append_new(list,
+                                  reduce_primitive(document, json_array_get(primitives, i)))) {
             json_decref(list);
             list = NULL;
         }
@@ -170,15 +181,17 @@ static json_t *reduce_mesh(const json_t *mesh)
     return reduced;
 }
 
-static json_t *reduce_node(const json_t *node)
+static json_t *reduce_node(const json_t *document, const json_t *node)
 {
+    (void)document;
     static const char *const keys[] = {"name",        "children", "mesh",  "matrix",
                                        "translation", "rotation", "scale", NULL};
     return keep(node, keys);
 }
 
-static json_t *reduce_material(const json_t *material)
+static json_t *reduce_material(const json_t *document, const json_t *material)
 {
+    (void)document;
     static const char *const keys[] = {
         "name", "pbrMetallicRoughness", "normalTexture", "occlusionTexture", "emissiveTexture",
         NULL};
@@ -186,12 +199,13 @@ static json_t *reduce_material(const json_t *material)
 }
 
 /* Replaces document[key] by its elements reduced. */
-static bool reduce_list(json_t *document, const char *key, json_t *(*reduce)(const json_t *))
+static bool reduce_list(json_t *document, const char *key,
+                        json_t *(*reduce)(const json_t *document, const json_t *item))
 {
     const json_t *list = json_object_get(document, key);
     json_t *reduced = json_array();
     for (size_t i = 0; reduced && i < json_array_size(list); i++) {
-        if (json_array_append_new(reduced, reduce(json_array_get(list, i)))) {
+        if (json_array_append_new(reduced, reduce(document, json_array_get(list, i)))) {
             json_decref(reduced);
             reduced = NULL;
         }
@@ -319,10 +333,19 @@ lr_status lr_gltf_notes(lr_import *import)
     if (!status && json_array_size(json_object_get(json, "skins")))
         status = lr_import_note(import, "skins are not shown: meshes keep the pose that they are "
                                         "stored in");
-    bool targets = false;
-    for (size_t i = 0; i < json_array_size(meshes); i++)
-        targets =
-            targets || any_has(json_object_get(json_array_get(meshes, i), "primitives"), "targets");
+    bool targets = false, integers = false;
+    for (size_t i = 0; i < json_array_size(meshes); i++) {
+        const json_t *list = json_object_get(json_array_get(meshes, i), "primitives");
+        targets = targets || any_has(list, "targets");
+        for (size_t k = 0; k < json_array_size(list); k++) {
+            const json_t *attributes = json_object_get(json_array_get(list, k), "attributes");
+            const json_t *uv = json_object_get(attributes, "TEXCOORD_0");
+            integers = integers || (uv && !has_floats(json, uv));
+        }
+    }
+    if (!status && integers)
+        status = lr_import_note(import, "texture coordinates that are stored as integers are not "
+                                        "read");
     if (!status && targets)
         status =
             lr_import_note(import, "morph targets are not shown: meshes keep their base shape");

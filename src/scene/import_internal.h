@@ -46,7 +46,7 @@ typedef struct lr_import {
     lr_bounds *bounds;   /* of each aiMesh that was converted */
     uint32_t *materials; /* of each aiMaterial: the scene's material; LR_NONE: not converted yet */
     lr_bounds world;     /* of all objects added */
-    char refused[512];   /* why a file was last not opened for assimp */
+    char refused[512];   /* why a file was not opened for assimp, the first one */
     lr_error *error;
 } lr_import;
 

@@ -158,7 +158,9 @@ static struct aiFile *open_for_assimp(struct aiFileIO *io, const char *name, con
     } else {
         lr_error error = {0};
         if (lr_import_read(import, name, &f->owned, &f->size, &error)) {
-            lr_import_shown(import->refused, sizeof import->refused, error.message);
+            /* The first: assimp then tries other names. */
+            if (!import->refused[0])
+                lr_import_shown(import->refused, sizeof import->refused, error.message);
             goto fail;
         }
         f->bytes = f->owned;
@@ -197,7 +199,9 @@ lr_status lr_import_parse(lr_import *import)
      * change with assimp's version. */
     import->scene = aiImportFileEx(lr_import_bare_name(import->name), 0, &io);
     if (import->scene && import->scene->mRootNode)
-        return LR_OK;
+        return import->refused[0] ? lr_import_note(import, "shown without a file that it names: %s",
+                                                   import->refused)
+                                  : LR_OK;
     char reason[400];
     lr_import_shown(reason, sizeof reason, import->scene ? "no nodes" : aiGetErrorString());
     bool opened = import->refused[0] == 0;

@@ -76,29 +76,18 @@ static void set_transmission(const json_t *json, lr_color base, double share, lr
     }
 }
 
-static lr_status gltf_material(lr_import *import, const json_t *json, lr_material *material)
+/* Colour, highlight, mirror, matt share and what goes through. */
+static void set_surface(const json_t *json, bool as_metal, lr_material *material)
 {
     const json_t *pbr = lr_gltf_member(json, "pbrMetallicRoughness");
+    const json_t *thin = lr_gltf_extension(json, "KHR_materials_transmission");
+    const json_t *bending = lr_gltf_extension(json, "KHR_materials_ior");
     lr_color base = gltf_color(pbr, "baseColorFactor", 1, 1);
-    const json_t *alpha_item = json_array_get(lr_gltf_member(pbr, "baseColorFactor"), 3);
-    double alpha = json_is_number(alpha_item) ? clamp(json_number_value(alpha_item), 0, 1) : 1;
-    double metallic = clamp(lr_gltf_number(pbr, "metallicFactor", 1), 0, 1);
+    double metallic = as_metal ? clamp(lr_gltf_number(pbr, "metallicFactor", 1), 0, 1) : 0;
     double roughness = clamp(lr_gltf_number(pbr, "roughnessFactor", 1), 0, 1);
-    lr_status status = LR_OK;
-    if (lr_gltf_member(pbr, "metallicRoughnessTexture")) {
-        metallic = 0;
-        status = lr_import_note(import,
-                                "material \"%s\": metallicRoughnessTexture is not used, the "
-                                "surface is shown as no metal",
-                                material->name);
-    }
-    double transmission =
-        clamp(lr_gltf_number(lr_gltf_extension(json, "KHR_materials_transmission"),
-                             "transmissionFactor", 0),
-              0, 1);
-    double ior = lr_gltf_number(lr_gltf_extension(json, "KHR_materials_ior"), "ior", 1.5);
+    double transmission = clamp(lr_gltf_number(thin, "transmissionFactor", 0), 0, 1);
+    double ior = lr_gltf_number(bending, "ior", 1.5);
     material->ior = ior >= 1 && ior <= 100 ? ior : 1.5;
-    material->one_sided = !json_is_true(lr_gltf_member(json, "doubleSided"));
 
     /* Mirrors fade out at a roughness of 0.5; what a rough metal would spread is shown as matt. */
     double mirror = fmax(0, 1 - 2 * roughness);
@@ -106,49 +95,74 @@ static lr_status gltf_material(lr_import *import, const json_t *json, lr_materia
     lr_color f0 = mix(grey(facing * facing), base, metallic);
     double width = roughness * roughness;
     material->shininess = clamp(2 / fmax(width * width, 1e-12) - 2, 0, SHININESS_MAX);
-    /* (n + 8) / 8 keeps the light of a Blinn-Phong highlight the same for all widths; held at 1. */
+    /* (n + 8) / 8 keeps the light of a Blinn-Phong highlight the same for all widths; held at 1. The
+     * widest would be a second matt share. */
     double strength = fmin((material->shininess + 8) / 8, 1 / fmax(greatest(f0), 1e-6));
-    material->specular = lr_vec3_scale(f0, strength);
+    material->specular = lr_vec3_scale(f0, strength * (1 - roughness));
     material->reflect = lr_vec3_scale(f0, mirror);
     set_color(material, base);
-    double through = transmission * (1 - metallic);
     material->diffuse = grey((1 - metallic) * (1 - transmission) + metallic * (1 - mirror));
-    if (through > 0)
-        set_transmission(json, base, through, material);
+    if (transmission * (1 - metallic) > 0)
+        set_transmission(json, base, transmission * (1 - metallic), material);
+}
 
+/* Sets what alphaMode says; true when that is only nearly what it means. */
+static bool set_alpha(const json_t *json, lr_material *material)
+{
+    const json_t *pbr = lr_gltf_member(json, "pbrMetallicRoughness");
+    const json_t *item = json_array_get(lr_gltf_member(pbr, "baseColorFactor"), 3);
     const char *mode = json_string_value(lr_gltf_member(json, "alphaMode"));
-    if (mode && strcmp(mode, "MASK") == 0) {
+    if (mode && strcmp(mode, "MASK") == 0)
         material->alpha_cutoff = clamp(lr_gltf_number(json, "alphaCutoff", 0.5), 0, 1);
-    } else if (mode && strcmp(mode, "BLEND") == 0) {
-        bool textured = lr_gltf_member(pbr, "baseColorTexture") != NULL;
-        material->alpha_cutoff = textured ? 0.5 : 0;
-        material->diffuse = lr_vec3_scale(material->diffuse, alpha);
-        material->transmit = lr_vec3_add(lr_vec3_scale(material->transmit, alpha), grey(1 - alpha));
-        if (alpha < 1 && through == 0) {
-            material->ior = 1;
-            material->one_sided = false;
-        }
-        if (!status)
-            status = lr_import_note(import,
-                                    "material \"%s\": alphaMode BLEND is shown as letting rays "
-                                    "through%s",
-                                    material->name,
-                                    textured ? ", and nothing is where the texture's alpha is "
-                                               "below 0.5"
-                                             : "");
+    if (!mode || strcmp(mode, "BLEND") != 0)
+        return false;
+    double alpha = json_is_number(item) ? clamp(json_number_value(item), 0, 1) : 1;
+    bool through = greatest(material->transmit) > 0;
+    material->alpha_cutoff = lr_gltf_member(pbr, "baseColorTexture") ? 0.5 : 0;
+    material->diffuse = lr_vec3_scale(material->diffuse, alpha);
+    material->transmit = lr_vec3_add(lr_vec3_scale(material->transmit, alpha), grey(1 - alpha));
+    if (alpha < 1 && !through) {
+        material->ior = 1;
+        material->one_sided = false;
     }
-    double light = lr_gltf_number(lr_gltf_extension(json, "KHR_materials_emissive_strength"),
-                                  "emissiveStrength", 1);
-    material->emission =
-        lr_vec3_scale(gltf_color(json, "emissiveFactor", 0, 1), clamp(light, 0, LR_COLOR_MAX));
-    if (lr_gltf_member(json, "emissiveTexture") && greatest(material->emission) > 0) {
-        material->emission = grey(0);
-        if (!status)
-            status = lr_import_note(import,
-                                    "material \"%s\": emissiveTexture is not used, the surface "
-                                    "sends out no light",
-                                    material->name);
-    }
+    return true;
+}
+
+/* False when it is left out because a texture shapes it. */
+static bool set_emission(const json_t *json, lr_material *material)
+{
+    const json_t *strength = lr_gltf_extension(json, "KHR_materials_emissive_strength");
+    double light = clamp(lr_gltf_number(strength, "emissiveStrength", 1), 0, LR_COLOR_MAX);
+    lr_color color = lr_vec3_scale(gltf_color(json, "emissiveFactor", 0, 1), light);
+    bool textured = lr_gltf_member(json, "emissiveTexture") && greatest(color) > 0;
+    material->emission = textured ? grey(0) : color;
+    return !textured;
+}
+
+static lr_status gltf_material(lr_import *import, const json_t *json, lr_material *material)
+{
+    const json_t *pbr = lr_gltf_member(json, "pbrMetallicRoughness");
+    const json_t *texture = lr_gltf_member(pbr, "baseColorTexture");
+    bool mapped = lr_gltf_member(pbr, "metallicRoughnessTexture") != NULL;
+    material->one_sided = !json_is_true(lr_gltf_member(json, "doubleSided"));
+    set_surface(json, !mapped, material);
+    bool blended = set_alpha(json, material), emission = set_emission(json, material);
+    const struct {
+        bool applies;
+        const char *text;
+    } notes[] = {
+        {mapped, "metallicRoughnessTexture is not used, the surface is shown as no metal"},
+        {lr_gltf_extension(texture, "KHR_texture_transform") != NULL,
+         "the shift, turn and scale of its texture are left out"},
+        {blended && !texture, "alphaMode BLEND is shown as letting rays through"},
+        {blended && texture, "alphaMode BLEND is shown as letting rays through, and nothing is "
+                             "where the texture's alpha is below 0.5"},
+        {!emission, "emissiveTexture is not used, the surface sends out no light"},
+    };
+    lr_status status = LR_OK;
+    for (size_t i = 0; !status && i < sizeof notes / sizeof *notes; i++)
+        if (notes[i].applies)
+            status = lr_import_note(import, "material \"%s\": %s", material->name, notes[i].text);
     return status;
 }
 

@@ -94,7 +94,7 @@ static lr_status visit_node(lr_import *import, const visit *at, visits *stack)
         if (status)
             return status;
     }
-    if (at->depth == LR_IMPORT_DEPTH_MAX)
+    if (at->depth > LR_IMPORT_DEPTH_MAX) /* assimp may put a root of its own on top */
         return lr_fail(import->error, LR_ERROR_FILE, "%s: its nodes nest more than %d deep",
                        import->shown, LR_IMPORT_DEPTH_MAX);
     for (uint32_t i = node->mChildren ? node->mNumChildren : 0; i-- > 0;) {

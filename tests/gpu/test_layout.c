@@ -383,9 +383,10 @@ static void test_offsets(void **state)
 #define RECORDS 3 /* of each kind; the last is loaded */
 
 /* The rows in the order of a packed scene, and what layout.comp makes of them. */
-static const char *const kinds[] = {"gpu_texture", "gpu_sphere", "gpu_solid",    "gpu_plane",
-                                    "gpu_flat",    "gpu_object", "gpu_material", "gpu_medium",
-                                    "gpu_light",   "gpu_ray",    "gpu_hit"};
+static const char *const kinds[] = {"gpu_texture", "gpu_sphere",   "gpu_solid",    "gpu_plane",
+                                    "gpu_flat",    "gpu_object",   "gpu_material", "gpu_medium",
+                                    "gpu_light",   "gpu_triangle", "gpu_instance", "gpu_ray",
+                                    "gpu_hit"};
 enum { KIND_COUNT = sizeof kinds / sizeof *kinds, ROW_KINDS = KIND_COUNT - 2 };
 
 /* Floats that are no subnormals, and integers that would be: small ones. */

@@ -232,10 +232,30 @@ static void test_filter(void **state)
     lr_scene_destroy(scene);
 }
 
+/* A plane whose picture, along x, is opaque up to 1/2, between a wall and its light. */
+static void test_plane_with_a_hole(void **state)
+{
+    for (int i = 0; i < 8; i++) {
+        double x = i / 4.0 - 0.7;
+        rgb color =
+            render_pixel(*state, NULL,
+                         "camera: {from: [%g, 0, 0], to: [%g, 0, -1]}\n"
+                         "ambient: 0\n"
+                         "lights: [{directional: {direction: [0, 0, -1]}}]\n"
+                         "objects:\n"
+                         "- plane: {normal: [0, 0, 1], offset: -1, material: {color: 1}}\n"
+                         "- plane: {normal: [0, 0, 1], offset: 1, material: {color: {image: "
+                         "tests/images/scenes/cutout.png, wrap: clamp}, alpha_cutoff: 0.5}}\n",
+                         x, x);
+        assert_near(color.g, x < 0.5 ? 0 : 1, 1e-6);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_filter),
+        cmocka_unit_test(test_plane_with_a_hole),
         cmocka_unit_test(test_validation_is_silent),
     };
     return cmocka_run_group_tests(tests, setup_device, NULL);

@@ -175,12 +175,12 @@ static void test_unknown(void **state)
 {
     (void)state;
     REFUSE("", "the file is empty");
-    static const char *const others[] = {"P",     "P0 1 1",    "P7\nWIDTH 1", "PG 1 1",
-                                         "P6x1",  "GIF89a...", "BM......",    "\xff\xd8\xff\xe0",
-                                         "hello", "\x89PNG",   "\x76\x2f\x31"};
+    static const char *const others[] = {"P",       "P0 1 1",      "P7\nWIDTH 1", "PG 1 1",
+                                         "P6x1",    "GIF89a...",   "BM......",    "hello",
+                                         "\x89PNG", "\x76\x2f\x31"};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         expect_failure((const unsigned char *)others[i], strlen(others[i]),
-                       "not a picture in a known format; PPM, PGM, PBM, PNG, PFM, EXR and HDR");
+                       "not a picture in a known format; PPM, PGM, PBM, PNG, PFM, EXR, HDR");
     lr_image image;
     lr_error error = {0};
     assert_int_equal(lr_image_read("/nonexistent/x.png", &image, &error), LR_ERROR_FILE);
