@@ -58,7 +58,8 @@ void nearest_triangle(uint i, bool valid, gpu_instance place)
     EACH_RAY
     {
         triangle_hit hit = intersect_triangle(ray_o[k], mesh_ray[k], f);
-        bool there = valid && !(has_one_sided && (f.flags & LR_FLAG_ONE_SIDED) != 0u && !hit.front);
+        bool sided = has_one_sided && ((f.flags | place.flags) & LR_FLAG_ONE_SIDED) != 0u;
+        bool there = valid && !(sided && !hit.front);
         keep(k, there, hit.t, i, f.object + place.object, f.order);
     }
 }

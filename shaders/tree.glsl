@@ -71,12 +71,14 @@ const uint stack_registers = uint(LR_TREE_DEPTH / LR_BATCH);
 // roughly first, and runs `test` on each primitive i in them; `valid` is false where i is none. An
 // inner node puts its inner children aside, and its leaves are tested at once: so no round of either
 // loop is in vain, which matters where every branch is paid for. Loops end at their bottom, as
-// lavapipe executes what follows a break once more.
+// lavapipe executes what follows a break once more. An invocation that has left the inner loop knows
+// only what each round makes of the last one's value, as lavapipe goes on computing all else for it
+// while others are in the loop (docs/drivers.md): so `next` is the root again at the end, and leaves
+// are kept though there are none when a round begins.
 #define VISIT_TREE(root, test)                                                              \
     {                                                                                              \
         uint stack[STACK_SIZE];                                                                    \
         uint depth = 0u, next = root;                                                              \
-        bool done = false;                                                                         \
         for (;;) {                                                                                 \
             uint leaf0 = 0u, leaf1 = 0u;                                                           \
             for (;;) {                                                                             \
@@ -90,21 +92,21 @@ const uint stack_registers = uint(LR_TREE_DEPTH / LR_BATCH);
                 near0 = joint_min(near0);                                                          \
                 near1 = joint_min(near1);                                                          \
                 bool met0 = near0 != LR_BOX_MISSED, met1 = near1 != LR_BOX_MISSED;                 \
-                bool is_leaf0 = node.child0 >= LR_NODE_LEAF, is_leaf1 = node.child1 >= LR_NODE_LEAF; \
-                leaf0 = met0 && is_leaf0 ? node.child0 : 0u;                                       \
-                leaf1 = met1 && is_leaf1 ? node.child1 : 0u;                                       \
+                bool is_leaf0 = node.child0 >= LR_NODE_LEAF, is_leaf1 = node.child1 >= LR_NODE_LEAF;\
+                leaf0 = met0 && is_leaf0 ? node.child0 : leaf0;                                    \
+                leaf1 = met1 && is_leaf1 ? node.child1 : leaf1;                                    \
                 bool inner0 = met0 && !is_leaf0, inner1 = met1 && !is_leaf1;                       \
                 bool first0 = inner0 && !(inner1 && near1 < near0);                                \
                 bool neither = !inner0 && !inner1;                                                 \
                 PUSH(stack, depth, inner0 && inner1, first0 ? node.child1 : node.child0)           \
                 depth += inner0 && inner1 ? 1u : 0u;                                               \
-                done = neither && depth == 0u;                                                     \
+                bool done = neither && depth == 0u;                                                \
                 depth -= neither && !done ? 1u : 0u;                                               \
                 next = first0 ? node.child0 : node.child1;                                         \
                 uint popped;                                                                       \
                 POP(stack, depth, popped)                                                          \
                 next = neither ? (done ? root : popped) : next;                                    \
-                if (done || (leaf0 | leaf1) != 0u)                                                 \
+                if (next == root || (leaf0 | leaf1) != 0u)                                         \
                     break;                                                                         \
             }                                                                                      \
             for (;;) {                                                                             \
@@ -119,10 +121,10 @@ const uint stack_registers = uint(LR_TREE_DEPTH / LR_BATCH);
                 if ((leaf0 | leaf1) == 0u)                                                         \
                     break;                                                                         \
             }                                                                                      \
-            if (done)                                                                              \
+            if (next == root)                                                                      \
                 break;                                                                             \
         }                                                                                          \
-        finished = finished && done;                                                               \
+        finished = finished && next == root;                                                       \
     }
 
 // Runs `test` on each primitive i of a list that is too short for a tree.
