@@ -339,8 +339,9 @@ void lr_wavefront_destroy(lr_wavefront *wavefront)
         if (programs[i])
             w->device->vk.vkDestroyPipeline(w->device->handle, programs[i], NULL);
     lr_layout_destroy(w->device, &w->layout);
-    lr_buffer *buffers[] = {&w->frame,         &w->rows, &w->film, &w->film_host, &w->counters,
-                            &w->counters_host, &w->hits, &w->none, &w->found,     &w->shadow_rays};
+    lr_buffer *buffers[] = {&w->frame,    &w->rows,          &w->film,  &w->film_host,
+                            &w->counters, &w->counters_host, &w->hits,  &w->none,
+                            &w->found,    &w->shadow_rays,   &w->cells, &w->order};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         lr_buffer_destroy(w->device, buffers[i]);
     for (uint32_t i = 0; i < w->pool_count; i++)
