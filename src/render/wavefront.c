@@ -217,6 +217,12 @@ static void close_if_empty(lr_wavefront *w, lr_queue *queue)
     queue->rays = NULL;
 }
 
+/* A scene may be too large for a storage buffer, and is then read as a texel buffer only. */
+static bool storage_fits(const lr_wavefront *w)
+{
+    return w->rows.size <= w->device->limits.maxStorageBufferRange;
+}
+
 /* The buffers of the kernels that read the rays of one queue and write those of another. */
 static void list_buffers(const lr_wavefront *w, const lr_buffer *rays_in, const lr_buffer *rays_out,
                          const lr_buffer *buffers[LR_BIND_COUNT])
@@ -224,7 +230,7 @@ static void list_buffers(const lr_wavefront *w, const lr_buffer *rays_in, const 
     const lr_buffer *list[LR_BIND_COUNT] = {
         [LR_BIND_FRAME] = &w->frame,
         [LR_BIND_SCENE_TEXEL] = w->rows.view ? &w->rows : &w->none,
-        [LR_BIND_SCENE_ROWS] = &w->rows,
+        [LR_BIND_SCENE_ROWS] = storage_fits(w) ? &w->rows : &w->none,
         [LR_BIND_FILM] = &w->film,
         [LR_BIND_COUNTERS] = &w->counters,
         [LR_BIND_RAYS_IN] = rays_in,
@@ -315,7 +321,7 @@ lr_status lr_wavefront_create(lr_device *device, const lr_packed_scene *scene,
     double uploaded = lr_now();
     stats->upload_cpu_seconds += lr_cpu_now() - cpu_start;
     cpu_start = lr_cpu_now();
-    bool texel_loads = w->rows.view && !options->storage_loads;
+    bool texel_loads = w->rows.view && !(options->storage_loads && storage_fits(w));
     if (!status)
         status = create_programs(w, texel_loads, error);
     if (!status)
