@@ -4,6 +4,9 @@
 
 #include "gpu/commands.h"
 
+/* Bytes that travel at once. */
+#define STAGING_MAX ((size_t)16 << 20)
+
 static const VkBufferUsageFlags transfers =
     VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 
@@ -29,6 +32,8 @@ static lr_status check_limits(const lr_device *device, lr_buffer_kind kind, VkDe
     if (kind == LR_BUFFER_UNIFORM) {
         limit = "maxUniformBufferRange";
         most = device->limits.maxUniformBufferRange;
+    } else if (kind == LR_BUFFER_TEXEL && size / 16 <= device->limits.maxTexelBufferElements) {
+        return LR_OK; /* beyond maxStorageBufferRange it is a texel buffer only */
     } else if (kind != LR_BUFFER_HOST) {
         limit = "maxStorageBufferRange";
         most = device->limits.maxStorageBufferRange;
@@ -111,13 +116,16 @@ lr_status lr_buffer_upload(lr_device *device, lr_buffer *buffer, const void *byt
                            lr_error *error)
 {
     lr_buffer staging;
-    lr_status status = lr_buffer_create(device, LR_BUFFER_HOST, size, "an upload", &staging, error);
-    if (status)
-        return status;
-    memcpy(staging.mapped, bytes, size);
-    status = lr_commands_begin(device, error);
-    if (!status) {
-        lr_commands_copy(device, &staging, buffer, size);
+    size_t piece = size < STAGING_MAX ? size : STAGING_MAX;
+    lr_status status =
+        lr_buffer_create(device, LR_BUFFER_HOST, piece, "an upload", &staging, error);
+    for (size_t done = 0; done < size && !status; done += piece) {
+        size_t count = size - done < piece ? size - done : piece;
+        memcpy(staging.mapped, (const char *)bytes + done, count);
+        status = lr_commands_begin(device, error);
+        if (status)
+            break;
+        lr_commands_copy_to(device, &staging, buffer, done, count);
         status = lr_commands_finish(device, error);
     }
     lr_buffer_destroy(device, &staging);

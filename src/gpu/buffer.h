@@ -15,7 +15,8 @@ typedef struct lr_buffer {
 typedef enum lr_buffer_kind {
     LR_BUFFER_STORAGE, /* device memory: storage, indirect, transfers both ways */
     LR_BUFFER_UNIFORM, /* device memory: uniform block */
-    LR_BUFFER_TEXEL,   /* device memory: uniform texel buffer and storage */
+    LR_BUFFER_TEXEL,   /* device memory: uniform texel buffer if it has no more elements than
+                          that may have, storage if it is no larger than that may be */
     LR_BUFFER_HOST,    /* mapped, coherent memory for transfers */
 } lr_buffer_kind;
 

@@ -63,7 +63,13 @@ void lr_commands_barrier(lr_device *device)
 void lr_commands_copy(lr_device *device, const lr_buffer *from, const lr_buffer *to,
                       VkDeviceSize size)
 {
-    VkBufferCopy region = {.size = size};
+    lr_commands_copy_to(device, from, to, 0, size);
+}
+
+void lr_commands_copy_to(lr_device *device, const lr_buffer *from, const lr_buffer *to,
+                         VkDeviceSize offset, VkDeviceSize size)
+{
+    VkBufferCopy region = {.dstOffset = offset, .size = size};
     device->vk.vkCmdCopyBuffer(device->commands, from->handle, to->handle, 1, &region);
 }
 

@@ -21,6 +21,9 @@ void lr_commands_barrier(lr_device *device);
 
 void lr_commands_copy(lr_device *device, const lr_buffer *from, const lr_buffer *to,
                       VkDeviceSize size);
+/* The same to `offset` bytes behind the start of `to`. */
+void lr_commands_copy_to(lr_device *device, const lr_buffer *from, const lr_buffer *to,
+                         VkDeviceSize offset, VkDeviceSize size);
 void lr_commands_zero(lr_device *device, const lr_buffer *buffer, VkDeviceSize size);
 
 /* Writes at most 64 KiB, taken when the command is recorded. */

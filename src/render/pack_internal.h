@@ -57,6 +57,11 @@ uint32_t lr_pack_tree(lr_packed_scene *packed, const lr_bvh *bvh, uint32_t first
 lr_status lr_pack_build(const lr_packed_scene *packed, const lr_bvh_box *boxes, uint32_t count,
                         uint32_t leaf_size, lr_bvh **bvh, lr_error *error);
 
+/* Notes where something in a tree is, and lays the cells around most of what was noted: within two
+ * standard deviations of the mean. */
+void lr_pack_place(lr_packed_scene *packed, const lr_bvh_box *box);
+void lr_pack_cells(lr_packed_scene *packed);
+
 /* Widens *reach, the greatest coordinate in a tree, by a box. */
 void lr_pack_reach(float *reach, const lr_bvh_box *box);
 
@@ -64,5 +69,12 @@ void lr_pack_reach(float *reach, const lr_bvh_box *box);
  * the instance of object i. `flags` are the objects'. */
 lr_status lr_pack_meshes(const lr_scene *scene, const uint32_t *flags, uint32_t *instances,
                          lr_packed_scene *packed, lr_error *error);
+
+/* pack_vertices.c: the vertices of the meshes that are shown and have more than positions, those of
+ * meshes with one user in world space. vertex_rows[i] becomes where mesh i's begin. False when
+ * memory is out. */
+bool lr_pack_vertices(const lr_scene *scene, const uint32_t *users, const uint32_t *shown_by,
+                      uint32_t *vertex_rows, lr_packed_scene *packed);
+bool lr_mesh_has_attributes(const lr_mesh *mesh);
 
 #endif

@@ -4,8 +4,10 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 
 /* Small leaves are faster, great ones save memory where there are many triangles. */
 #define LEAF_SIZE 2
@@ -14,9 +16,7 @@
 
 /* A triangle on its way into a tree. */
 typedef struct facet {
-    float corners[9];
     uint32_t mesh, triangle, object;
-    bool mirrored;
 } facet;
 
 /* What all the triangles' records come from. */
@@ -32,79 +32,6 @@ typedef struct mesh_packing {
     uint32_t instance_count, triangle_count;
 } mesh_packing;
 
-static bool has_attributes(const lr_mesh *mesh)
-{
-    return mesh->normals || mesh->uvs || mesh->colors;
-}
-
-static uint32_t pack_unit(double x)
-{
-    return (uint32_t)(floor(x * 32767 + 0.5) + 32767);
-}
-
-static double sign_of(double x)
-{
-    return x < 0 ? -1 : 1;
-}
-
-/* The other way round than unpack_normal() in mesh.glsl. */
-static uint32_t pack_normal(const float *n)
-{
-    double sum = fabs((double)n[0]) + fabs((double)n[1]) + fabs((double)n[2]);
-    double x = n[0] / sum, y = n[1] / sum;
-    if (n[2] < 0) {
-        double folded = (1 - fabs(y)) * sign_of(x);
-        y = (1 - fabs(x)) * sign_of(y);
-        x = folded;
-    }
-    return pack_unit(x) | pack_unit(y) << 16;
-}
-
-static uint32_t pack_color(const float *c)
-{
-    uint32_t bits = 0;
-    for (int i = 0; i < 3; i++)
-        bits |= (uint32_t)(sqrt(fmin(fmax(c[i], 0), 1)) * 1023 + 0.5) << 10 * i;
-    return bits;
-}
-
-/* The vertex's normal, in the world if the mesh is brought there by the inverse of `to_mesh`. */
-static uint32_t vertex_normal(const lr_mesh *mesh, uint32_t vertex, const lr_transform *to_mesh)
-{
-    const float *n = &mesh->normals[3 * (size_t)vertex];
-    if (!to_mesh)
-        return pack_normal(n);
-    lr_vec3 turned = {n[0], n[1], n[2]};
-    turned = lr_vec3_normalize(lr_transform_normal(to_mesh, turned));
-    return pack_normal((const float[3]){(float)turned.x, (float)turned.y, (float)turned.z});
-}
-
-static bool pack_vertices(mesh_packing *m)
-{
-    for (uint32_t i = 0; i < m->scene->mesh_count; i++) {
-        const lr_mesh *mesh = &m->scene->meshes[i];
-        m->vertex_rows[i] = m->packed->row_count;
-        if (!m->users[i] || !has_attributes(mesh))
-            continue;
-        m->packed->constants[LR_SPEC_CORNERS] = 1;
-        if (!lr_pack_reserve(m->packed, mesh->vertex_count))
-            return false;
-        const lr_object *object = &m->scene->objects[m->shown_by[i]];
-        bool in_world = m->users[i] == 1 && object->transformed;
-        lr_transform to_mesh = lr_pack_inverse(&object->to_world);
-        for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-            struct gpu_vertex vertex = {
-                .normal = mesh->normals ? vertex_normal(mesh, v, in_world ? &to_mesh : NULL) : 0,
-                .u = mesh->uvs ? mesh->uvs[2 * (size_t)v] : 0,
-                .v = mesh->uvs ? mesh->uvs[2 * (size_t)v + 1] : 0,
-                .color = mesh->colors ? pack_color(&mesh->colors[3 * (size_t)v]) : 0,
-            };
-            lr_pack_rows(m->packed, &vertex, 1);
-        }
-    }
-    return true;
-}
-
 static bool is_mirrored(const lr_transform *t)
 {
     lr_vec3 x = {t->m[0][0], t->m[1][0], t->m[2][0]}, y = {t->m[0][1], t->m[1][1], t->m[2][1]};
@@ -112,7 +39,21 @@ static bool is_mirrored(const lr_transform *t)
     return lr_vec3_dot(lr_vec3_cross(x, y), z) < 0;
 }
 
-/* The vertices of a triangle, counter-clockwise as seen from outside after the transform. */
+/* How the meshes of a tree come into its space. */
+typedef struct placement {
+    const lr_transform *to_world; /* NULL: as they are */
+    bool mirrored;                /* front and back change sides */
+} placement;
+
+static placement place_mesh(const mesh_packing *m, const facet *f, bool shared)
+{
+    const lr_object *object = &m->scene->objects[f->object];
+    placement p = {.to_world = shared || !object->transformed ? NULL : &object->to_world};
+    p.mirrored = p.to_world && is_mirrored(p.to_world);
+    return p;
+}
+
+/* The vertices of a triangle, counter-clockwise as seen from outside. */
 static void facet_vertices(const lr_mesh *mesh, uint32_t triangle, bool mirrored,
                            uint32_t vertices[3])
 {
@@ -122,52 +63,64 @@ static void facet_vertices(const lr_mesh *mesh, uint32_t triangle, bool mirrored
     vertices[2] = v[mirrored ? 1 : 2];
 }
 
-/* The corners of a triangle under a transform; false when they span no area. */
-static bool place_facet(const lr_mesh *mesh, const uint32_t vertices[3], const lr_transform *t,
-                        float corners[9])
+static void facet_corners(const lr_mesh *mesh, const uint32_t vertices[3], const placement *p,
+                          vec3 corners[3])
 {
-    lr_vec3 p[3];
     for (int i = 0; i < 3; i++) {
         const float *v = &mesh->positions[3 * (size_t)vertices[i]];
-        p[i] = (lr_vec3){v[0], v[1], v[2]};
-        if (t)
-            p[i] = lr_transform_point(t, p[i]);
-        corners[3 * i] = (float)p[i].x;
-        corners[3 * i + 1] = (float)p[i].y;
-        corners[3 * i + 2] = (float)p[i].z;
+        corners[i] = (vec3){v[0], v[1], v[2]};
+        if (p->to_world)
+            corners[i] = lr_pack_vec3(lr_transform_point(p->to_world, (lr_vec3){v[0], v[1], v[2]}));
     }
-    lr_vec3 q[3];
-    for (int i = 0; i < 3; i++)
-        q[i] = (lr_vec3){corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
-    lr_vec3 n = lr_vec3_cross(lr_vec3_sub(q[1], q[0]), lr_vec3_sub(q[2], q[0]));
-    return lr_vec3_dot(n, n) > 0;
 }
 
-/* Adds a mesh's triangles, those without an area left out. Returns the new count. */
-static uint32_t add_facets(const mesh_packing *m, uint32_t mesh, uint32_t object,
-                           const lr_transform *t, facet *facets, uint32_t count)
+static bool has_area(const vec3 corners[3])
+{
+    double ux = (double)corners[1].x - corners[0].x, vx = (double)corners[2].x - corners[0].x;
+    double uy = (double)corners[1].y - corners[0].y, vy = (double)corners[2].y - corners[0].y;
+    double uz = (double)corners[1].z - corners[0].z, vz = (double)corners[2].z - corners[0].z;
+    return uy * vz != uz * vy || uz * vx != ux * vz || ux * vy != uy * vx;
+}
+
+static float least(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static float greatest(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+static lr_bvh_box box_of(const vec3 c[3])
+{
+    return (lr_bvh_box){
+        .min = {least(c[0].x, least(c[1].x, c[2].x)), least(c[0].y, least(c[1].y, c[2].y)),
+                least(c[0].z, least(c[1].z, c[2].z))},
+        .max = {greatest(c[0].x, greatest(c[1].x, c[2].x)),
+                greatest(c[0].y, greatest(c[1].y, c[2].y)),
+                greatest(c[0].z, greatest(c[1].z, c[2].z))},
+    };
+}
+
+/* Adds a mesh's triangles with their boxes, those without an area left out. Returns the new count.
+ */
+static uint32_t add_facets(const mesh_packing *m, uint32_t mesh, uint32_t object, bool shared,
+                           facet *facets, lr_bvh_box *boxes, uint32_t count)
 {
     const lr_mesh *from = &m->scene->meshes[mesh];
-    bool mirrored = t && is_mirrored(t);
+    placement p = place_mesh(m, &(facet){.object = object}, shared);
     for (uint32_t i = 0; i < from->triangle_count; i++) {
-        facet *f = &facets[count];
         uint32_t vertices[3];
-        facet_vertices(from, i, mirrored, vertices);
-        *f = (facet){.mesh = mesh, .triangle = i, .object = object, .mirrored = mirrored};
-        count += place_facet(from, vertices, t, f->corners);
+        vec3 corners[3];
+        facet_vertices(from, i, p.mirrored, vertices);
+        facet_corners(from, vertices, &p, corners);
+        if (!has_area(corners))
+            continue;
+        facets[count] = (facet){mesh, i, object};
+        boxes[count++] = box_of(corners);
     }
     return count;
-}
-
-static lr_bvh_box box_of(const facet *f)
-{
-    lr_bvh_box box;
-    for (int i = 0; i < 3; i++) {
-        const float *c = &f->corners[i];
-        box.min[i] = fminf(c[0], fminf(c[3], c[6]));
-        box.max[i] = fmaxf(c[0], fmaxf(c[3], c[6]));
-    }
-    return box;
 }
 
 static uint32_t attribute_flags(const lr_mesh *mesh)
@@ -176,45 +129,50 @@ static uint32_t attribute_flags(const lr_mesh *mesh)
            (mesh->colors ? LR_FLAG_COLORS : 0);
 }
 
-static bool pack_facet(mesh_packing *m, const facet *f, bool shared)
+/* The records of one tree's triangles, in the order of its leaves. */
+typedef struct facet_work {
+    const mesh_packing *m;
+    const facet *facets;
+    const lr_bvh *bvh;
+    bool shared;
+    uint32_t first_row, first; /* of the records, and of the corners */
+} facet_work;
+
+#define FACETS_A_PART 32768
+
+static void pack_facet(const facet_work *work, uint32_t place)
 {
+    const mesh_packing *m = work->m;
+    const facet *f = &work->facets[work->bvh->order[place]];
     const lr_mesh *mesh = &m->scene->meshes[f->mesh];
-    const float *c = f->corners;
+    placement p = place_mesh(m, f, work->shared);
+    uint32_t v[3], row = m->vertex_rows[f->mesh];
+    vec3 corners[3];
+    facet_vertices(mesh, f->triangle, p.mirrored, v);
+    facet_corners(mesh, v, &p, corners);
     struct gpu_triangle record = {
-        .a = {c[0], c[1], c[2]},
-        .object = shared ? 0 : f->object,
-        .b = {c[3], c[4], c[5]},
+        .a = corners[0],
+        .object = work->shared ? 0 : f->object,
+        .b = corners[1],
         .order = f->triangle,
-        .c = {c[6], c[7], c[8]},
-        .flags = attribute_flags(mesh) | (shared ? 0 : m->object_flags[f->object]),
+        .c = corners[2],
+        .flags = attribute_flags(mesh) | (work->shared ? 0 : m->object_flags[f->object]),
     };
-    if (m->corners && has_attributes(mesh)) {
-        uint32_t v[3], row = m->vertex_rows[f->mesh];
-        facet_vertices(mesh, f->triangle, f->mirrored, v);
-        m->corners[m->triangle_count] = (struct gpu_corners){row + v[0], row + v[1], row + v[2], 0};
-    }
-    m->triangle_count++;
-    return lr_pack_rows(m->packed, &record, sizeof record / 16) != UINT32_MAX;
+    memcpy(&m->packed->rows[work->first_row + 3 * (size_t)place], &record, sizeof record);
+    if (m->corners && lr_mesh_has_attributes(mesh))
+        m->corners[work->first + place] =
+            (struct gpu_corners){row + v[0], row + v[1], row + v[2], 0};
 }
 
-/* A tree over facets, whose records must come right behind those of the trees before. */
-static lr_status build_facets(const lr_packed_scene *packed, const facet *facets, uint32_t count,
-                              float *reach, lr_bvh **bvh, lr_error *error)
+static void pack_part(void *context, uint32_t part)
 {
-    lr_bvh_box *boxes = lr_alloc_large(count, sizeof *boxes);
-    if (!boxes)
-        return lr_fail(error, LR_ERROR_MEMORY, "out of memory for %u triangles", count);
-    for (uint32_t i = 0; i < count; i++) {
-        boxes[i] = box_of(&facets[i]);
-        lr_pack_reach(reach, &boxes[i]);
-    }
-    uint32_t leaf_size = count > MANY ? LEAF_SIZE_OF_MANY : LEAF_SIZE;
-    lr_status status = lr_pack_build(packed, boxes, count, leaf_size, bvh, error);
-    free(boxes);
-    return status;
+    const facet_work *work = context;
+    uint64_t end = (uint64_t)(part + 1) * FACETS_A_PART;
+    for (uint32_t i = part * FACETS_A_PART; i < work->bvh->count && i < end; i++)
+        pack_facet(work, i);
 }
 
-/* The records of one tree's triangles, and the tree behind the last of them. */
+/* The tree of some meshes. */
 typedef struct mesh_tree {
     lr_bvh *bvh;
     uint32_t first; /* number of its first triangle */
@@ -227,51 +185,54 @@ static lr_status no_memory(lr_error *error)
 }
 
 /* Builds the tree over `count` facets and packs their records in the order of its leaves. */
-static lr_status pack_facets(mesh_packing *m, const facet *facets, uint32_t count, bool shared,
-                             mesh_tree *tree, lr_error *error)
+static lr_status pack_facets(mesh_packing *m, const facet *facets, const lr_bvh_box *boxes,
+                             uint32_t count, bool shared, mesh_tree *tree, lr_error *error)
 {
-    tree->first = m->packed->frame.triangles.begin + m->triangle_count;
-    lr_status status = build_facets(m->packed, facets, count, &tree->reach, &tree->bvh, error);
+    lr_packed_scene *packed = m->packed;
+    for (uint32_t i = 0; i < count; i++) {
+        lr_pack_reach(&tree->reach, &boxes[i]);
+        if (!shared)
+            lr_pack_place(packed, &boxes[i]);
+    }
+    tree->first = packed->frame.triangles.begin + m->triangle_count;
+    uint32_t leaf_size = count > MANY ? LEAF_SIZE_OF_MANY : LEAF_SIZE;
+    lr_status status = lr_pack_build(packed, boxes, count, leaf_size, &tree->bvh, error);
     if (status)
         return status;
-    if (!lr_pack_reserve(m->packed, 3ull * count))
+    if (!lr_pack_reserve(packed, 3ull * count))
         return no_memory(error);
-    for (uint32_t i = 0; i < count; i++)
-        if (!pack_facet(m, &facets[tree->bvh->order[i]], shared))
-            return no_memory(error);
+    facet_work work = {m, facets, tree->bvh, shared, packed->row_count, m->triangle_count};
+    lr_run_parallel((count + FACETS_A_PART - 1) / FACETS_A_PART, pack_part, &work);
+    packed->row_count += 3 * count;
+    m->triangle_count += count;
     return LR_OK;
 }
 
-/* All meshes with one user, in world space. */
-static lr_status pack_world_tree(mesh_packing *m, mesh_tree *tree, lr_error *error)
+/* A tree of all meshes with one user in world space or, if `mesh` is none of these, of that mesh in
+ * its own. */
+static lr_status pack_tree_of(mesh_packing *m, uint32_t mesh, mesh_tree *tree, lr_error *error)
 {
-    uint64_t total = 0;
-    for (uint32_t i = 0; i < m->scene->mesh_count; i++)
-        total += m->users[i] == 1 ? m->scene->meshes[i].triangle_count : 0;
-    facet *facets = lr_alloc_large(total ? total : 1, sizeof *facets);
-    uint32_t count = 0;
-    if (!facets)
-        return no_memory(error);
-    for (uint32_t i = 0; i < m->scene->object_count; i++) {
-        const lr_object *object = &m->scene->objects[i];
-        if (object->kind == LR_MESH && m->users[object->mesh] == 1)
-            count = add_facets(m, object->mesh, i, object->transformed ? &object->to_world : NULL,
-                               facets, count);
-    }
-    lr_status status = count ? pack_facets(m, facets, count, false, tree, error) : LR_OK;
-    free(facets);
-    return status;
-}
-
-static lr_status pack_shared_tree(mesh_packing *m, uint32_t mesh, mesh_tree *tree, lr_error *error)
-{
-    uint32_t total = m->scene->meshes[mesh].triangle_count;
+    const lr_scene *scene = m->scene;
+    bool shared = mesh != LR_NONE;
+    uint64_t total = 1;
+    for (uint32_t i = 0; i < scene->mesh_count; i++)
+        if (shared ? i == mesh : m->users[i] == 1)
+            total += scene->meshes[i].triangle_count;
     facet *facets = lr_alloc_large(total, sizeof *facets);
-    if (!facets)
-        return no_memory(error);
-    uint32_t count = add_facets(m, mesh, 0, NULL, facets, 0);
-    lr_status status = count ? pack_facets(m, facets, count, true, tree, error) : LR_OK;
+    lr_bvh_box *boxes = lr_alloc_large(total, sizeof *boxes);
+    uint32_t count = 0;
+    lr_status status = facets && boxes ? LR_OK : no_memory(error);
+    if (!status && shared)
+        count = add_facets(m, mesh, m->shown_by[mesh], true, facets, boxes, 0);
+    for (uint32_t i = 0; i < scene->object_count && !status && !shared; i++) {
+        const lr_object *object = &scene->objects[i];
+        if (object->kind == LR_MESH && m->users[object->mesh] == 1)
+            count = add_facets(m, object->mesh, i, false, facets, boxes, count);
+    }
+    if (count)
+        status = pack_facets(m, facets, boxes, count, shared, tree, error);
     free(facets);
+    free(boxes);
     return status;
 }
 
@@ -279,10 +240,10 @@ static lr_status pack_shared_tree(mesh_packing *m, uint32_t mesh, mesh_tree *tre
 static lr_status pack_trees(mesh_packing *m, mesh_tree *trees, lr_error *error)
 {
     uint32_t count = m->scene->mesh_count;
-    lr_status status = pack_world_tree(m, &trees[count], error);
+    lr_status status = pack_tree_of(m, LR_NONE, &trees[count], error);
     for (uint32_t i = 0; i < count && !status; i++)
         if (m->users[i] > 1)
-            status = pack_shared_tree(m, i, &trees[i], error);
+            status = pack_tree_of(m, i, &trees[i], error);
     return status;
 }
 
@@ -343,6 +304,7 @@ static bool place_meshes(mesh_packing *m, const mesh_tree *trees, uint32_t *inst
         lr_transform to_mesh = lr_pack_inverse(&object->to_world);
         instances[i] = m->instance_count;
         boxes[m->instance_count] = box_in_world(tree->bvh->nodes, &object->to_world);
+        lr_pack_place(m->packed, &boxes[m->instance_count]);
         struct gpu_instance *instance = add_instance(m, &to_mesh, tree, roots[object->mesh]);
         instance->object = i;
         instance->flags = m->object_flags[i];
@@ -388,6 +350,33 @@ static lr_status pack_instances(mesh_packing *m, const lr_bvh_box *boxes, uint32
     return status;
 }
 
+/* Packs the trees' nodes. Where no mesh is shown several times, rays go through the world's tree
+ * without further ado. */
+static lr_status place_trees(mesh_packing *m, const mesh_tree *trees, uint32_t *instances,
+                             lr_error *error)
+{
+    const lr_scene *scene = m->scene;
+    lr_packed_scene *packed = m->packed;
+    const mesh_tree *world = &trees[scene->mesh_count];
+    bool shared = false;
+    for (uint32_t i = 0; i < scene->mesh_count; i++)
+        shared = shared || trees[i].bvh;
+    packed->constants[LR_SPEC_INSTANCES] = shared;
+    if (!shared && world->bvh) {
+        packed->frame.reach = fmaxf(packed->frame.reach, world->reach);
+        packed->frame.triangles.nodes = lr_pack_tree(packed, world->bvh, world->first);
+        return packed->frame.triangles.nodes == UINT32_MAX ? no_memory(error) : LR_OK;
+    }
+    lr_bvh_box *boxes = lr_alloc(scene->object_count + 1ull, sizeof *boxes);
+    lr_status status = LR_OK;
+    if (boxes && place_meshes(m, trees, instances, boxes))
+        status = pack_instances(m, boxes, instances, error);
+    else
+        status = no_memory(error);
+    free(boxes);
+    return status;
+}
+
 static lr_status pack_all(mesh_packing *m, mesh_tree *trees, uint32_t *instances, lr_error *error)
 {
     const lr_scene *scene = m->scene;
@@ -400,7 +389,7 @@ static lr_status pack_all(mesh_packing *m, mesh_tree *trees, uint32_t *instances
         return lr_fail(error, LR_ERROR_SCENE,
                        "the meshes have %llu triangles, over the limit of %u",
                        (unsigned long long)shown, LR_NODE_FIRST - first);
-    if (!pack_vertices(m))
+    if (!lr_pack_vertices(m->scene, m->users, m->shown_by, m->vertex_rows, m->packed))
         return no_memory(error);
     if (packed->constants[LR_SPEC_CORNERS]) {
         m->corners = lr_alloc_large(shown, sizeof *m->corners);
@@ -415,14 +404,8 @@ static lr_status pack_all(mesh_packing *m, mesh_tree *trees, uint32_t *instances
     packed->frame.corners = packed->row_count;
     if (m->corners && lr_pack_rows(packed, m->corners, m->triangle_count) == UINT32_MAX)
         return no_memory(error);
-    packed->constants[LR_SPEC_INSTANCES] = m->triangle_count > 0;
-    lr_bvh_box *boxes = lr_alloc(scene->object_count + 1ull, sizeof *boxes);
-    if (boxes && place_meshes(m, trees, instances, boxes))
-        status = pack_instances(m, boxes, instances, error);
-    else
-        status = no_memory(error);
-    free(boxes);
-    return status;
+    packed->constants[LR_SPEC_MESHES] = m->triangle_count > 0;
+    return place_trees(m, trees, instances, error);
 }
 
 lr_status lr_pack_meshes(const lr_scene *scene, const uint32_t *flags, uint32_t *instances,

@@ -17,6 +17,7 @@ typedef struct lr_mesh_file {
     lr_object *objects;
     lr_bounds *bounds; /* of each object's mesh, in its own space */
     uint32_t count;
+    uint32_t first_material, end_material; /* those that came with it */
 } lr_mesh_file;
 
 typedef struct lr_mesh_files {
@@ -95,6 +96,9 @@ void lr_read_objects(lr_reader *reader, const lr_node *node);
 /* The objects of the mesh file that `file` names; NULL after reporting. */
 const lr_mesh_file *lr_read_mesh_file(lr_reader *reader, const lr_node *file);
 void lr_mesh_files_free(lr_mesh_files *files);
+
+/* Drops the materials of mesh files that no object has, since the text gives them others. */
+void lr_drop_unused_materials(lr_reader *reader);
 
 /* Checks of shapes, at the best node; false after reporting. */
 bool lr_check_shape(lr_reader *reader, const lr_object *object, const lr_record *record,

@@ -145,6 +145,8 @@ void lr_read_scene(lr_reader *reader, const lr_node *root)
         lr_read_lights(reader, lights);
     if (objects)
         lr_read_objects(reader, objects);
+    if (reader->files.count && reader->report->count == 0 && !reader->report->no_memory)
+        lr_drop_unused_materials(reader);
 }
 
 static void free_mesh(lr_mesh *mesh)
