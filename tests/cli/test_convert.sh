@@ -48,7 +48,7 @@ expect 5 "$lavaray" convert -q "$work/p.nff" "$folder/p.yaml" && says err 'p-1\.
 
 # The picture is the same to the byte from our own language, and POV-Ray agrees about its own.
 "$lavaray" doctor >/dev/null 2>&1 || finish
-for scene in $nff $small scenes/transforms.yaml; do
+for scene in $nff $small scenes/transforms.yaml "$work/p.nff"; do
     expect 0 "$lavaray" convert -q "$scene" "$folder/again.yaml"
     expect 0 "$lavaray" render -q "$scene" --size 80x60 --spp 1 -o "$folder/first.pfm"
     expect 0 "$lavaray" render -q "$folder/again.yaml" --size 80x60 --spp 1 -o "$folder/second.pfm"

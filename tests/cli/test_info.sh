@@ -102,6 +102,6 @@ single(0, 0, 1, 1, 0, 1, 0, 1, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1)
 whole(0, 1, 2, 0)
 assert said["scene_sha256"] == hashlib.sha256(out).hexdigest()
 assert said["bounds"] == [[0, 0, 0], [1.5, 2.5, 3.5]]
-assert said["objects"]["mesh"] == 2 and said["lights"]["point"] == 1 and len(said["notes"]) == 1
+assert said["objects"]["mesh"] == 2 and said["lights"]["point"] == 1 and len(said["notes"]) == 2
 PYTHON
 finish

@@ -137,6 +137,10 @@ static void test_round_objects(void **state)
     assert_int_equal(scene->objects[3].line, 12);
     assert_string_equal(scene->notes[0],
                         "s.nff:18: spheres and cones without a size, left out: 3 from here on");
+    assert_string_equal(
+        scene->notes[1],
+        "s.nff:10: negative radii, whose objects show their outside as well: 3 from "
+        "here on");
     lr_scene_destroy(scene);
 }
 
