@@ -31,6 +31,8 @@ layout(constant_id = LR_SPEC_FLAT_TREE) const bool has_flat_tree = true;
 layout(constant_id = LR_SPEC_ELLIPSOID_TREE) const bool has_ellipsoid_tree = true;
 layout(constant_id = LR_SPEC_BOX_TREE) const bool has_box_tree = true;
 layout(constant_id = LR_SPEC_CONE_TREE) const bool has_cone_tree = true;
+layout(constant_id = LR_SPEC_MESHES) const bool has_meshes = true;
+layout(constant_id = LR_SPEC_FALLOFF) const bool has_falloff = true;
 layout(constant_id = LR_SPEC_INSTANCES) const bool has_instances = true;
 layout(constant_id = LR_SPEC_INSTANCE_TREE) const bool has_instance_tree = true;
 layout(constant_id = LR_SPEC_ONE_SIDED) const bool has_one_sided = true;
@@ -55,6 +57,9 @@ layout(std430, set = 0, binding = LR_BIND_FOUND) buffer FoundBlock { uvec4 found
 layout(set = 0, binding = LR_BIND_FOUND_TEXEL) uniform usamplerBuffer found_texels;
 layout(std430, set = 0, binding = LR_BIND_SHADOWS) buffer ShadowBlock { uvec4 shadow_rays_queue[]; };
 layout(set = 0, binding = LR_BIND_SHADOWS_TEXEL) uniform usamplerBuffer shadow_texels;
+
+layout(std430, set = 0, binding = LR_BIND_CELLS) buffer CellBlock { uint cells[]; };
+layout(std430, set = 0, binding = LR_BIND_ORDER) buffer OrderBlock { uint shadow_order[]; };
 
 layout(push_constant) uniform WorkBlock { gpu_work work; };
 

@@ -38,7 +38,9 @@ typedef struct vec4 {
 #define LR_BIND_FOUND_TEXEL 11
 #define LR_BIND_SHADOWS 12       /* gpu_shadow_ray[], LR_SHADOW_LIGHTS segments of them */
 #define LR_BIND_SHADOWS_TEXEL 13
-#define LR_BIND_COUNT 14
+#define LR_BIND_CELLS 14         /* how many shadow rays end in each cell, segment by segment */
+#define LR_BIND_ORDER 15         /* the shadow rays of each segment in the order of their cells */
+#define LR_BIND_COUNT 16
 
 /* ---- Specialisation constants: what a scene does not use is not compiled ---- */
 #define LR_SPEC_TEXEL_LOADS 0
@@ -66,13 +68,15 @@ typedef struct vec4 {
 #define LR_SPEC_ELLIPSOID_TREE 22
 #define LR_SPEC_BOX_TREE 23
 #define LR_SPEC_CONE_TREE 24
-#define LR_SPEC_INSTANCES 25          /* there are meshes */
+#define LR_SPEC_INSTANCES 25          /* meshes stand in instances: some are shown several times */
 #define LR_SPEC_INSTANCE_TREE 26
 #define LR_SPEC_ONE_SIDED 27          /* some surface is there from its front only */
 #define LR_SPEC_CORNERS 28            /* some mesh has normals, texture coordinates or colours */
 #define LR_SPEC_TEXTURES 29
 #define LR_SPEC_CUTOUTS 30 /* some surface has holes where its picture is transparent */
-#define LR_SPEC_COUNT 31
+#define LR_SPEC_MESHES 31
+#define LR_SPEC_FALLOFF 32 /* some light fades with distance */
+#define LR_SPEC_COUNT 33
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -386,8 +390,14 @@ struct gpu_frame {
     uint corners; /* row of the gpu_corners of triangle 0 */
     gpu_list instances;
     gpu_list triangles;
+    vec3 cells_from; /* where the first of the cells is that shadow rays are sorted by */
+    float unused0;
+    vec3 inv_cell; /* 1 / its sides */
+    float unused1;
 };
-LR_ROWS(gpu_frame, 20)
+LR_ROWS(gpu_frame, 22)
+#define LR_CELL_BITS 5  /* cells along a side, as a power of two */
+#define LR_CELLS 32768u
 
 /* ---- What differs from one dispatch to the next (push constants) ---- */
 struct gpu_work {
@@ -402,10 +412,8 @@ struct gpu_work {
     uint light_count;
     uint first_lights; /* 1 in the first shading pass of the hits: the rest is done once, there */
     uint shadow_room;  /* shadow rays that a segment holds */
-    uint shadow_first0; /* and how many are in each already */
-    uint shadow_first1;
-    uint shadow_first2;
-    uint shadow_first3;
+    uint shadow_first[4]; /* and how many are in each already */
+    uint sorted; /* 1: the shadow rays are, or will be, sorted */
 };
 #define LR_SHADOW_LIGHTS 4 /* light l goes to segment l modulo this */
 
@@ -472,10 +480,7 @@ struct gpu_counters {
     uint non_finite;
     uint saturated;
     uint made; /* camera rays */
-    uint shadow_rays0; /* added to the segments */
-    uint shadow_rays1;
-    uint shadow_rays2;
-    uint shadow_rays3;
+    uint shadow_rays[4]; /* added to the segments */
     uint found;      /* entries that the kernels of trees finished */
     uint unfinished; /* ... that a driver stopped half-way */
     uint unused0;

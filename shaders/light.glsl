@@ -31,8 +31,10 @@ arriving_light sample_light(gpu_light light, vec3 position)
     bool apart = distance2 > 7.888609052210118e-31; // at the light itself there is no direction
     float safe2 = apart ? distance2 : 1.0;
     vec3 wi = directional ? -light.direction : to_light * ex_rsqrt(safe2);
-    float strength = ex_exp2(clamp(-light.half_falloff * ex_log2(safe2), LR_ATTENUATION_MIN,
-                                   LR_ATTENUATION_MAX));
+    float strength = 1.0;
+    if (has_falloff)
+        strength = ex_exp2(clamp(-light.half_falloff * ex_log2(safe2), LR_ATTENUATION_MIN,
+                                 LR_ATTENUATION_MAX));
     strength = directional ? 1.0 : (apart ? strength : 0.0);
     if (has_spots) {
         // Smoothstep in the cosine from the edge to the inner angle.

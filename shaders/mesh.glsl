@@ -5,6 +5,9 @@
 #include "exact.glsl"
 #include "scene_data.glsl"
 
+const gpu_instance no_instance =
+    gpu_instance(vec4(0.0), vec4(0.0), vec4(0.0), 0u, 0u, 0.0, 0u);
+
 gpu_instance load_instance(uint i)
 {
     uint at = frame.instances.base + 4u * i;
@@ -39,29 +42,43 @@ vec2 mesh_uv(uint i, uint flags, vec3 weight)
     return uv;
 }
 
+// Where no mesh is shown several times all stand in world space, and these change nothing.
 vec3 instance_point(gpu_instance s, vec3 p)
 {
-    return vec3(ex_dot(s.row0.xyz, p) + s.row0.w, ex_dot(s.row1.xyz, p) + s.row1.w,
-                ex_dot(s.row2.xyz, p) + s.row2.w);
+    vec3 q = p;
+    if (has_instances)
+        q = vec3(ex_dot(s.row0.xyz, p) + s.row0.w, ex_dot(s.row1.xyz, p) + s.row1.w,
+                 ex_dot(s.row2.xyz, p) + s.row2.w);
+    return q;
 }
 
 vec3 instance_vector(gpu_instance s, vec3 v)
 {
-    return vec3(ex_dot(s.row0.xyz, v), ex_dot(s.row1.xyz, v), ex_dot(s.row2.xyz, v));
+    vec3 q = v;
+    if (has_instances)
+        q = vec3(ex_dot(s.row0.xyz, v), ex_dot(s.row1.xyz, v), ex_dot(s.row2.xyz, v));
+    return q;
 }
 
 // A normal of the mesh in the world, not of unit length.
 vec3 instance_normal(gpu_instance s, vec3 n)
 {
-    return s.row0.xyz * n.x + s.row1.xyz * n.y + s.row2.xyz * n.z;
+    vec3 q = n;
+    if (has_instances)
+        q = s.row0.xyz * n.x + s.row1.xyz * n.y + s.row2.xyz * n.z;
+    return q;
 }
 
 // A vector of the mesh in the world, by Cramer's rule.
 vec3 vector_of_instance(gpu_instance s, vec3 v)
 {
-    vec3 x = ex_cross(s.row1.xyz, s.row2.xyz), y = ex_cross(s.row2.xyz, s.row0.xyz);
-    vec3 z = ex_cross(s.row0.xyz, s.row1.xyz);
-    return (x * v.x + y * v.y + z * v.z) * ex_rcp(away_from_zero(ex_dot(s.row0.xyz, x)));
+    vec3 q = v;
+    if (has_instances) {
+        vec3 x = ex_cross(s.row1.xyz, s.row2.xyz), y = ex_cross(s.row2.xyz, s.row0.xyz);
+        vec3 z = ex_cross(s.row0.xyz, s.row1.xyz);
+        q = (x * v.x + y * v.y + z * v.z) * ex_rcp(away_from_zero(ex_dot(s.row0.xyz, x)));
+    }
+    return q;
 }
 
 // v times the power of two that brings its greatest component to 1..2.

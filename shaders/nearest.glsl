@@ -97,6 +97,9 @@ void main()
     if (has_instances) {
         EACH_RAY keep_world(k);
         VISIT_KIND(true, has_instance_tree, frame.instances, nearest_instance(i, valid))
+    } else if (has_meshes) {
+        EACH_RAY mesh_ray[k] = shear_ray(ray_d[k]);
+        VISIT_TREE(hidden(frame.triangles.nodes), nearest_triangle(i, valid, no_instance))
     }
     uint count = 0u;
     EACH_RAY count += uint(packet_index(k) < work.count);

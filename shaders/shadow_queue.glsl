@@ -3,6 +3,7 @@
 #define SHADOW_QUEUE_GLSL
 
 #include "batch.glsl"
+#include "cell.glsl"
 #include "queue.glsl"
 
 uvec4 shadow_row(uint row)
@@ -27,19 +28,10 @@ void send_light(gpu_shadow_ray ray, bool wanted)
 {
     uint segment = ray.light & uint(LR_SHADOW_LIGHTS - 1), slot;
     uint begin = segment * work.shadow_room;
-    if (segment == 0u) {
-        TAKE_SLOT(counters.shadow_rays0, wanted, slot)
-        slot += work.shadow_first0;
-    } else if (segment == 1u) {
-        TAKE_SLOT(counters.shadow_rays1, wanted, slot)
-        slot += work.shadow_first1;
-    } else if (segment == 2u) {
-        TAKE_SLOT(counters.shadow_rays2, wanted, slot)
-        slot += work.shadow_first2;
-    } else {
-        TAKE_SLOT(counters.shadow_rays3, wanted, slot)
-        slot += work.shadow_first3;
-    }
+    TAKE_SLOT(counters.shadow_rays[segment], wanted, slot)
+    slot += work.shadow_first[segment];
+    if (wanted && hidden(work.sorted) != 0u)
+        atomicAdd(cells[segment * LR_CELLS + cell_of(ray.origin)], 1u);
     // The host checks that no segment ran over.
     if (wanted && slot < work.shadow_room) {
         uint at = 2u * (begin + slot);

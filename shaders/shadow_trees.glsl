@@ -139,7 +139,11 @@ uvec3 depth_of(uint i)
 // Number of shadow ray k in the queue.
 uint shadow_index(uint k)
 {
-    return work.light * work.shadow_room + min(packet_index(k), max(work.count, 1u) - 1u);
+    uint first = work.light * work.shadow_room;
+    uint i = min(packet_index(k), max(work.count, 1u) - 1u);
+    if (hidden(work.sorted) != 0u)
+        i = shadow_order[first + i];
+    return first + i;
 }
 
 void main()
@@ -165,6 +169,9 @@ void main()
     if (has_instances) {
         EACH_RAY keep_world(k);
         VISIT_KIND(true, has_instance_tree, frame.instances, shadow_instance(i, valid))
+    } else if (has_meshes) {
+        EACH_RAY mesh_ray[k] = shear_ray(ray_d[k]);
+        VISIT_TREE(hidden(frame.triangles.nodes), shadow_triangle(i, valid, no_instance))
     }
     uint count = 0u, blocked = 0u;
     for (uint k = 0u;;) {

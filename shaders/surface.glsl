@@ -31,8 +31,9 @@ vec3 curved_point(vec3 p, gpu_triangle f, vec3 weight, vec3 na, vec3 nb, vec3 nc
 
 surface mesh_surface(gpu_hit hit, vec3 o, vec3 d)
 {
-    uint number = scene_row(frame.objects + 5u * hit.object + 3u).w;
-    gpu_instance place = load_instance(number);
+    gpu_instance place = no_instance;
+    if (has_instances)
+        place = load_instance(scene_row(frame.objects + 5u * hit.object + 3u).w);
     gpu_triangle f = load_triangle(hit.primitive);
     triangle_hit met = intersect_triangle(instance_point(place, o),
                                           shear_ray(instance_vector(place, d)), f);
@@ -126,7 +127,7 @@ surface surface_at(gpu_hit hit, vec3 o, vec3 d)
         uv = planar ? projected : uv;
     }
     surface s = surface(position, reach * LR_OFFSET, normal, object, normal, position, vec3(1.0), uv);
-    if (has_instances && is_in(frame.triangles, primitive))
+    if (has_meshes && is_in(frame.triangles, primitive))
         s = mesh_surface(hit, o, d);
     return s;
 }

@@ -7,7 +7,7 @@
 
 // Whether there is a tree in world space.
 const bool has_world_tree = has_sphere_tree || has_flat_tree || has_ellipsoid_tree || has_box_tree ||
-                            has_cone_tree || has_instance_tree;
+                            has_cone_tree || has_instance_tree || (has_meshes && !has_instances);
 
 // 1 / direction, and the origin times it, moved forward and back by what all rounding may amount to.
 vec3 slab_inverse[RAYS], slab_from[RAYS], slab_to[RAYS];

@@ -31,4 +31,7 @@ struct lr_device {
 /* Seconds on a clock that only goes forward. */
 double lr_now(void);
 
+/* Seconds that all threads of the process have computed, those of a software driver with them. */
+double lr_cpu_now(void);
+
 #endif

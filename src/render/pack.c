@@ -168,6 +168,7 @@ static lr_status pack_lights(const lr_scene *scene, const lr_light *fallback,
         pack_light(&lights[i], &record);
         if (lr_pack_rows(packed, &record, sizeof record / 16) == UINT32_MAX)
             return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's lights");
+        packed->constants[LR_SPEC_FALLOFF] |= lights[i].falloff > 0;
         packed->constants[LR_SPEC_SPOTS] |= lights[i].kind == LR_LIGHT_SPOT;
     }
     return LR_OK;

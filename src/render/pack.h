@@ -21,6 +21,9 @@ typedef struct lr_packed_scene {
     uint32_t light_count;
     uint32_t tests_per_ray;      /* about so many primitives does a ray meet on its way */
     uint32_t leaf_size, threads; /* of lr_settings */
+    /* Of the corners of what stands in trees: how many, the sums of their coordinates and of the
+     * squares of these. */
+    double places, place_sum[3], place_square_sum[3];
     struct gpu_frame frame;
     uint32_t constants[LR_SPEC_COUNT]; /* but for those that only the device decides */
 } lr_packed_scene;

@@ -81,6 +81,28 @@ void lr_pack_reach(float *reach, const lr_bvh_box *box)
         *reach = fmaxf(*reach, fmaxf(fabsf(box->min[i]), fabsf(box->max[i])));
 }
 
+void lr_pack_place(lr_packed_scene *packed, const lr_bvh_box *box)
+{
+    packed->places += 2;
+    for (int i = 0; i < 3; i++) {
+        double low = box->min[i], high = box->max[i];
+        packed->place_sum[i] += low + high;
+        packed->place_square_sum[i] += low * low + high * high;
+    }
+}
+
+void lr_pack_cells(lr_packed_scene *packed)
+{
+    float *from = &packed->frame.cells_from.x, *inverse = &packed->frame.inv_cell.x;
+    for (int i = 0; i < 3 && packed->places; i++) {
+        double mean = packed->place_sum[i] / packed->places;
+        double square = packed->place_square_sum[i] / packed->places;
+        double deviation = sqrt(fmax(square - mean * mean, 0)) + fabs(mean) * 1e-6 + 1e-20;
+        from[i] = (float)(mean - 2 * deviation);
+        inverse[i] = (float)((1 << LR_CELL_BITS) / (4 * deviation));
+    }
+}
+
 lr_status lr_pack_build(const lr_packed_scene *packed, const lr_bvh_box *boxes, uint32_t count,
                         uint32_t leaf_size, lr_bvh **bvh, lr_error *error)
 {
@@ -99,6 +121,7 @@ static lr_status build_tree(lr_packed_scene *packed, const lr_primitive *primiti
     for (uint32_t i = 0; i < count; i++) {
         boxes[i] = primitives[members[i]].box;
         lr_pack_reach(&packed->frame.reach, &boxes[i]);
+        lr_pack_place(packed, &boxes[i]);
     }
     lr_status status = lr_pack_build(packed, boxes, count, LEAF_SIZE, bvh, error);
     free(boxes);

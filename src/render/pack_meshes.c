@@ -198,8 +198,8 @@ static bool pack_facet(mesh_packing *m, const facet *f, bool shared)
 }
 
 /* A tree over facets, whose records must come right behind those of the trees before. */
-static lr_status build_facets(const lr_packed_scene *packed, const facet *facets, uint32_t count,
-                              float *reach, lr_bvh **bvh, lr_error *error)
+static lr_status build_facets(lr_packed_scene *packed, const facet *facets, uint32_t count,
+                              bool shared, float *reach, lr_bvh **bvh, lr_error *error)
 {
     lr_bvh_box *boxes = lr_alloc_large(count, sizeof *boxes);
     if (!boxes)
@@ -207,6 +207,8 @@ static lr_status build_facets(const lr_packed_scene *packed, const facet *facets
     for (uint32_t i = 0; i < count; i++) {
         boxes[i] = box_of(&facets[i]);
         lr_pack_reach(reach, &boxes[i]);
+        if (!shared)
+            lr_pack_place(packed, &boxes[i]);
     }
     uint32_t leaf_size = count > MANY ? LEAF_SIZE_OF_MANY : LEAF_SIZE;
     lr_status status = lr_pack_build(packed, boxes, count, leaf_size, bvh, error);
@@ -231,7 +233,8 @@ static lr_status pack_facets(mesh_packing *m, const facet *facets, uint32_t coun
                              mesh_tree *tree, lr_error *error)
 {
     tree->first = m->packed->frame.triangles.begin + m->triangle_count;
-    lr_status status = build_facets(m->packed, facets, count, &tree->reach, &tree->bvh, error);
+    lr_status status =
+        build_facets(m->packed, facets, count, shared, &tree->reach, &tree->bvh, error);
     if (status)
         return status;
     if (!lr_pack_reserve(m->packed, 3ull * count))
@@ -343,6 +346,7 @@ static bool place_meshes(mesh_packing *m, const mesh_tree *trees, uint32_t *inst
         lr_transform to_mesh = lr_pack_inverse(&object->to_world);
         instances[i] = m->instance_count;
         boxes[m->instance_count] = box_in_world(tree->bvh->nodes, &object->to_world);
+        lr_pack_place(m->packed, &boxes[m->instance_count]);
         struct gpu_instance *instance = add_instance(m, &to_mesh, tree, roots[object->mesh]);
         instance->object = i;
         instance->flags = m->object_flags[i];
@@ -388,6 +392,33 @@ static lr_status pack_instances(mesh_packing *m, const lr_bvh_box *boxes, uint32
     return status;
 }
 
+/* Packs the trees' nodes. Where no mesh is shown several times, rays go through the world's tree
+ * without further ado. */
+static lr_status place_trees(mesh_packing *m, const mesh_tree *trees, uint32_t *instances,
+                             lr_error *error)
+{
+    const lr_scene *scene = m->scene;
+    lr_packed_scene *packed = m->packed;
+    const mesh_tree *world = &trees[scene->mesh_count];
+    bool shared = false;
+    for (uint32_t i = 0; i < scene->mesh_count; i++)
+        shared = shared || trees[i].bvh;
+    packed->constants[LR_SPEC_INSTANCES] = shared;
+    if (!shared && world->bvh) {
+        packed->frame.reach = fmaxf(packed->frame.reach, world->reach);
+        packed->frame.triangles.nodes = lr_pack_tree(packed, world->bvh, world->first);
+        return packed->frame.triangles.nodes == UINT32_MAX ? no_memory(error) : LR_OK;
+    }
+    lr_bvh_box *boxes = lr_alloc(scene->object_count + 1ull, sizeof *boxes);
+    lr_status status = LR_OK;
+    if (boxes && place_meshes(m, trees, instances, boxes))
+        status = pack_instances(m, boxes, instances, error);
+    else
+        status = no_memory(error);
+    free(boxes);
+    return status;
+}
+
 static lr_status pack_all(mesh_packing *m, mesh_tree *trees, uint32_t *instances, lr_error *error)
 {
     const lr_scene *scene = m->scene;
@@ -415,14 +446,8 @@ static lr_status pack_all(mesh_packing *m, mesh_tree *trees, uint32_t *instances
     packed->frame.corners = packed->row_count;
     if (m->corners && lr_pack_rows(packed, m->corners, m->triangle_count) == UINT32_MAX)
         return no_memory(error);
-    packed->constants[LR_SPEC_INSTANCES] = m->triangle_count > 0;
-    lr_bvh_box *boxes = lr_alloc(scene->object_count + 1ull, sizeof *boxes);
-    if (boxes && place_meshes(m, trees, instances, boxes))
-        status = pack_instances(m, boxes, instances, error);
-    else
-        status = no_memory(error);
-    free(boxes);
-    return status;
+    packed->constants[LR_SPEC_MESHES] = m->triangle_count > 0;
+    return place_trees(m, trees, instances, error);
 }
 
 lr_status lr_pack_meshes(const lr_scene *scene, const uint32_t *flags, uint32_t *instances,

@@ -170,6 +170,7 @@ static lr_status pack_drafts(const lr_scene *scene, const lr_settings *settings,
         status = lr_pack_meshes(scene, d->flags, d->instances, packed, error);
     if (status)
         return status;
+    lr_pack_cells(packed);
     packed->frame.objects = packed->row_count;
     for (uint32_t i = 0; i < count; i++)
         if (!pack_object_record(scene, i, d, packed))

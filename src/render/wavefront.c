@@ -9,6 +9,8 @@
 #include "shade.spv.h"
 #include "shadow_packet.spv.h"
 #include "shadow_ray.spv.h"
+#include "sort_place.spv.h"
+#include "sort_scan.spv.h"
 #include "trace.spv.h"
 
 /* Rays, towards lights too, times primitives that one pass may test: some 50 ms on two cores. */
@@ -22,6 +24,8 @@
 #define CHUNK_GPU 262144
 #define CHUNK_SOFTWARE 131072
 #define CHUNK_MIN 256
+
+#define CELLS_SIZE (4ull * LR_CELLS * LR_SHADOW_LIGHTS)
 
 /* RAYS of the kernels named packet. */
 #define PACKET_RAYS 4
@@ -112,16 +116,23 @@ static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *er
         {camera_spv, sizeof camera_spv, &w->camera},
         {trace_spv, sizeof trace_spv, &w->trace},
         {shade_spv, sizeof shade_spv, &w->shade},
+        {sort_scan_spv, sizeof sort_scan_spv, &w->sort_scan},
+        {sort_place_spv, sizeof sort_place_spv, &w->sort_place},
         {nearest_packet_spv, sizeof nearest_packet_spv, &w->nearest},
         {shadow_packet_spv, sizeof shadow_packet_spv, &w->shadow},
         {nearest_ray_spv, sizeof nearest_ray_spv, &w->nearest},
         {shadow_ray_spv, sizeof shadow_ray_spv, &w->shadow},
     };
-    const size_t always = 3, first_packet = 3, first_ray = 5;
-    size_t first = w->rays_at_once > 1 ? first_packet : first_ray;
+    /* The last two pairs exclude each other. */
+    const size_t always = 3, first_packet = 5, first_ray = 7;
+    size_t skipped = w->rays_at_once > 1 ? first_ray : first_packet;
+    size_t count = has_trees(w) ? sizeof wanted / sizeof *wanted : always;
     lr_status status = LR_OK;
-    for (size_t i = 0; i < sizeof wanted / sizeof *wanted && !status; i++) {
-        if (i >= always && !(has_trees(w) && (i == first || i == first + 1)))
+    for (size_t i = 0; i < count && !status; i++) {
+        if (i == skipped || i == skipped + 1)
+            continue;
+        /* Only the shadow rays of children are sorted. */
+        if (i >= always && i < first_packet && !w->scene->constants[LR_SPEC_SCATTER])
             continue;
         lr_program_desc desc = {wanted[i].words, wanted[i].size / 4, constants, LR_SPEC_COUNT};
         status = lr_program_create(w->device, &w->layout, &desc, wanted[i].program, error);
@@ -148,6 +159,8 @@ static lr_status create_buffers(lr_wavefront *w, lr_error *error)
          "the hits"},
         {&w->found, LR_BUFFER_TEXEL, found_size(w), "the nearest hits"},
         {&w->shadow_rays, LR_BUFFER_TEXEL, shadow_size(w), "the queue of shadow rays"},
+        {&w->cells, LR_BUFFER_STORAGE, has_trees(w) ? CELLS_SIZE : 16, "sorting"},
+        {&w->order, LR_BUFFER_STORAGE, shadow_size(w) / 8, "the order of shadow rays"},
         {&w->none, LR_BUFFER_TEXEL, 256, "nothing"},
     };
     lr_status status = LR_OK;
@@ -223,6 +236,8 @@ static void list_buffers(const lr_wavefront *w, const lr_buffer *rays_in, const 
         [LR_BIND_FOUND_TEXEL] = w->found.view ? &w->found : &w->none,
         [LR_BIND_SHADOWS] = &w->shadow_rays,
         [LR_BIND_SHADOWS_TEXEL] = w->shadow_rays.view ? &w->shadow_rays : &w->none,
+        [LR_BIND_CELLS] = &w->cells,
+        [LR_BIND_ORDER] = &w->order,
     };
     memcpy(buffers, list, sizeof list);
 }
@@ -271,8 +286,11 @@ static lr_status warm_up(lr_wavefront *w, lr_error *error)
         return status;
     struct gpu_work nothing = {0};
     reset_counters(w);
-    const VkPipeline programs[] = {w->camera, w->trace, w->shade, w->nearest, w->shadow};
-    for (size_t i = 0; i < sizeof programs / sizeof *programs && programs[i]; i++) {
+    const VkPipeline programs[] = {w->camera, w->trace,     w->shade,     w->nearest,
+                                   w->shadow, w->sort_scan, w->sort_place};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) {
+        if (!programs[i])
+            continue;
         lr_commands_barrier(w->device);
         lr_commands_dispatch(w->device, &w->layout, programs[i], w->set, &nothing, 1, 1, 1);
     }
@@ -286,7 +304,7 @@ lr_status lr_wavefront_create(lr_device *device, const lr_packed_scene *scene,
     *wavefront = (lr_wavefront){.device = device, .scene = scene, .stats = stats};
     lr_wavefront *w = wavefront;
     plan(w, options);
-    double start = lr_now();
+    double start = lr_now(), cpu_start = lr_cpu_now();
     lr_status status = create_layout(w, error);
     if (!status)
         status = create_buffers(w, error);
@@ -295,6 +313,8 @@ lr_status lr_wavefront_create(lr_device *device, const lr_packed_scene *scene,
     if (!status)
         status = open_generation(w, 0, error);
     double uploaded = lr_now();
+    stats->upload_cpu_seconds += lr_cpu_now() - cpu_start;
+    cpu_start = lr_cpu_now();
     bool texel_loads = w->rows.view && !options->storage_loads;
     if (!status)
         status = create_programs(w, texel_loads, error);
@@ -302,6 +322,7 @@ lr_status lr_wavefront_create(lr_device *device, const lr_packed_scene *scene,
         status = warm_up(w, error);
     stats->upload_seconds += uploaded - start;
     stats->compile_seconds += lr_now() - uploaded;
+    stats->compile_cpu_seconds += lr_cpu_now() - cpu_start;
     if (status)
         lr_wavefront_destroy(w);
     return status;
@@ -312,7 +333,8 @@ void lr_wavefront_destroy(lr_wavefront *wavefront)
     lr_wavefront *w = wavefront;
     if (!w->device)
         return;
-    VkPipeline programs[] = {w->camera, w->trace, w->shade, w->nearest, w->shadow};
+    VkPipeline programs[] = {w->camera, w->trace,     w->shade,     w->nearest,
+                             w->shadow, w->sort_scan, w->sort_place};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         if (programs[i])
             w->device->vk.vkDestroyPipeline(w->device->handle, programs[i], NULL);
@@ -332,10 +354,8 @@ static void record_shade(lr_wavefront *w, struct gpu_work *work)
     work->light = 0;
     work->first_lights = 1;
     work->shadow_room = w->shadow_room;
-    work->shadow_first0 = w->shadow_counts[0];
-    work->shadow_first1 = w->shadow_counts[1];
-    work->shadow_first2 = w->shadow_counts[2];
-    work->shadow_first3 = w->shadow_counts[3];
+    memcpy(work->shadow_first, w->shadow_counts, sizeof work->shadow_first);
+    work->sorted = w->shadows_sorted;
     do {
         work->light_count = at_most(w->lights_at_once, w->scene->light_count - work->light);
         lr_commands_barrier(w->device);
@@ -366,10 +386,9 @@ static lr_status take_counts(lr_wavefront *w, uint32_t rays, uint32_t generation
     const struct gpu_counters *c = w->counters_host.mapped;
     uint32_t made = generation == 0 ? rays : 0, shaded = c->hits * shade_dispatches(w);
     uint32_t found = has_trees(w) ? rays : 0;
-    const uint32_t *added = &c->shadow_rays0;
     bool fits = true;
     for (uint32_t i = 0; i < LR_SHADOW_LIGHTS; i++) {
-        w->shadow_counts[i] += added[i];
+        w->shadow_counts[i] += c->shadow_rays[i];
         fits = fits && w->shadow_counts[i] <= w->shadow_room;
     }
     if (c->made != made || c->traced != rays || c->hits > rays || c->rays > 2 * w->chunk_rays ||
@@ -410,12 +429,34 @@ static lr_status finish_pass(lr_wavefront *w, lr_error *error)
     return status;
 }
 
-/* Traces the shadow rays that wait in the segments. */
-static lr_status drain_shadows(lr_wavefront *w, lr_error *error)
+/* Brings the shadow rays of each segment into the order of the cells that they end in. */
+static void record_sort(lr_wavefront *w)
+{
+    struct gpu_work work = {.shadow_room = w->shadow_room};
+    lr_commands_dispatch(w->device, &w->layout, w->sort_scan, w->set, &work, LR_SHADOW_LIGHTS, 1,
+                         1);
+    lr_commands_barrier(w->device);
+    for (work.light = 0; work.light < LR_SHADOW_LIGHTS; work.light++) {
+        work.count = w->shadow_counts[work.light];
+        if (work.count)
+            lr_commands_dispatch(w->device, &w->layout, w->sort_place, w->set, &work,
+                                 groups_for(work.count, LR_GROUP_SIZE), 1, 1);
+    }
+    lr_commands_barrier(w->device);
+}
+
+static uint64_t waiting_shadows(const lr_wavefront *w)
 {
     uint64_t total = 0;
     for (uint32_t i = 0; i < LR_SHADOW_LIGHTS; i++)
         total += w->shadow_counts[i];
+    return total;
+}
+
+/* Traces the shadow rays that wait in the segments. */
+static lr_status drain_shadows(lr_wavefront *w, lr_error *error)
+{
+    uint64_t total = waiting_shadows(w);
     if (total == 0)
         return LR_OK;
     lr_status status = lr_commands_begin(w->device, error);
@@ -423,13 +464,15 @@ static lr_status drain_shadows(lr_wavefront *w, lr_error *error)
         return status;
     reset_counters(w);
     lr_commands_barrier(w->device);
-    for (uint32_t i = 0; i < LR_SHADOW_LIGHTS; i++) {
-        struct gpu_work work = {
-            .count = w->shadow_counts[i], .light = i, .shadow_room = w->shadow_room};
+    if (w->shadows_sorted)
+        record_sort(w);
+    struct gpu_work work = {.shadow_room = w->shadow_room, .sorted = w->shadows_sorted};
+    for (work.light = 0; work.light < LR_SHADOW_LIGHTS; work.light++) {
+        work.count = w->shadow_counts[work.light];
         uint32_t groups = groups_for(work.count, LR_GROUP_SIZE * w->rays_at_once);
         if (groups)
             lr_commands_dispatch(w->device, &w->layout, w->shadow, w->set, &work, groups, 1, 1);
-        w->shadow_counts[i] = 0;
+        w->shadow_counts[work.light] = 0;
     }
     status = finish_pass(w, error);
     const struct gpu_counters *c = w->counters_host.mapped;
@@ -442,14 +485,18 @@ static lr_status drain_shadows(lr_wavefront *w, lr_error *error)
     return status;
 }
 
-/* Traces the waiting shadow rays if those of `rays` more hits might not fit. */
-static lr_status make_shadow_room(lr_wavefront *w, uint32_t rays, lr_error *error)
+/* Traces the waiting shadow rays if those of `rays` more hits might not fit. Those of camera rays
+ * come in a good order; those of their children are sorted, and so wait for as many as there are.
+ */
+static lr_status make_shadow_room(lr_wavefront *w, uint32_t rays, bool sorted, lr_error *error)
 {
     uint32_t most = rays * groups_for(w->scene->light_count, LR_SHADOW_LIGHTS);
+    bool fits = w->shadows_sorted == sorted;
     for (uint32_t i = 0; i < LR_SHADOW_LIGHTS; i++)
-        if (w->shadow_counts[i] + most > w->shadow_room)
-            return drain_shadows(w, error);
-    return LR_OK;
+        fits = fits && w->shadow_counts[i] + most <= w->shadow_room;
+    lr_status status = fits ? LR_OK : drain_shadows(w, error);
+    w->shadows_sorted = sorted;
+    return status;
 }
 
 /* One pass: in generation 0 make camera rays; trace `rays` rays from work->first; shade. */
@@ -458,12 +505,14 @@ static lr_status run_pass(lr_wavefront *w, uint32_t generation, struct gpu_work 
 {
     lr_status status = open_generation(w, generation, error);
     if (!status)
-        status = make_shadow_room(w, rays, error);
+        status = make_shadow_room(w, rays, generation > 0, error);
     if (!status)
         status = lr_commands_begin(w->device, error);
     if (status)
         return status;
     work->count = rays;
+    if (w->shadows_sorted && waiting_shadows(w) == 0)
+        lr_commands_zero(w->device, &w->cells, w->cells.size);
     reset_counters(w);
     lr_commands_barrier(w->device);
     if (camera_groups) {
@@ -537,7 +586,7 @@ lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_p
                               void *user, const uint32_t **film, lr_error *error)
 {
     lr_wavefront *w = wavefront;
-    double start = lr_now(), read_before = w->stats->read_back_seconds;
+    double start = lr_now(), read_before = w->stats->read_back_seconds, cpu_start = lr_cpu_now();
     uint32_t pixels = tile->width * tile->height, samples = w->scene->frame.samples;
     lr_status status = lr_commands_begin(w->device, error);
     if (!status) {
@@ -567,5 +616,6 @@ lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_p
         status = read_film(w, tile, samples, error);
     *film = w->film_host.mapped;
     w->stats->trace_seconds += lr_now() - start - (w->stats->read_back_seconds - read_before);
+    w->stats->trace_cpu_seconds += lr_cpu_now() - cpu_start;
     return status;
 }

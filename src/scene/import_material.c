@@ -95,8 +95,8 @@ static void set_surface(const json_t *json, bool as_metal, lr_material *material
     lr_color f0 = mix(grey(facing * facing), base, metallic);
     double width = roughness * roughness;
     material->shininess = clamp(2 / fmax(width * width, 1e-12) - 2, 0, SHININESS_MAX);
-    /* (n + 8) / 8 keeps the light of a Blinn-Phong highlight the same for all widths; held at 1. The
-     * widest would be a second matt share. */
+    /* (n + 8) / 8 keeps the light of a Blinn-Phong highlight the same for all widths; held at 1.
+     * The widest would be a second matt share. */
     double strength = fmin((material->shininess + 8) / 8, 1 / fmax(greatest(f0), 1e-6));
     material->specular = lr_vec3_scale(f0, strength * (1 - roughness));
     material->reflect = lr_vec3_scale(f0, mirror);

@@ -406,7 +406,7 @@ static lr_status read_rows(reader *r, const element *e)
 static void make_scene(struct lr_ply *ply)
 {
     uint32_t *indices = ply->indices;
-    for (uint32_t i = 0; i < ply->mesh.mNumFaces; i++) {
+    for (uint32_t i = 0; indices && i < ply->mesh.mNumFaces; i++) {
         ply->mesh.mFaces[i].mIndices = indices;
         indices += ply->mesh.mFaces[i].mNumIndices;
     }

@@ -188,19 +188,22 @@ void main()
     put(frame.media); put(frame.lights); put(frame.inside0); put(frame.inside1);
     put(frame.inside2); put(frame.inside3); put(frame.balls); put(frame.bounded);
     put(floatBitsToUint(frame.reach)); put(frame.corners); put_list(frame.instances);
-    put_list(frame.triangles);
+    put_list(frame.triangles); put_vec3(frame.cells_from); put(floatBitsToUint(frame.unused0));
+    put_vec3(frame.inv_cell); put(floatBitsToUint(frame.unused1));
     put(work.tile_x); put(work.tile_y); put(work.tile_width); put(work.tile_height);
     put(work.first_sample); put(work.count); put(work.first); put(work.light);
     put(work.light_count); put(work.first_lights); put(work.shadow_room);
-    put(work.shadow_first0); put(work.shadow_first1); put(work.shadow_first2);
-    put(work.shadow_first3);
+    for (uint k = 0u; k < 4u; k++)
+        put(work.shadow_first[k]);
+    put(work.sorted);
     put(counters.hit_groups); put(counters.hit_groups_y); put(counters.hit_groups_z);
     put(counters.hits); put(counters.rays); put(counters.traced); put(counters.shaded);
     put(counters.reflected); put(counters.refracted); put(counters.passed);
     put(counters.reflected_hits); put(counters.refracted_hits); put(counters.shadow);
     put(counters.shadow_hits); put(counters.dropped_depth); put(counters.dropped_weight);
     put(counters.dropped_nesting); put(counters.non_finite); put(counters.saturated);
-    put(counters.made); put(counters.shadow_rays0); put(counters.shadow_rays1);
-    put(counters.shadow_rays2); put(counters.shadow_rays3); put(counters.found);
+    put(counters.made); for (uint k = 0u; k < 4u; k++)
+        put(counters.shadow_rays[k]);
+    put(counters.found);
     put(counters.unfinished); put(counters.unused0); put(counters.unused1);
 }

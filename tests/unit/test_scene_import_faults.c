@@ -19,6 +19,8 @@ static void test_indices(void **state)
     lr_scene_destroy(scene);
     put_text("none.ply", PLY_HEAD("3", "1") PLY_TRIANGLE "3 7 8 9\n");
     assert_true(import_fails("none.ply", NULL, "nothing in it that can be shown"));
+    put_text("empty.ply", PLY_HEAD("3", "2") PLY_TRIANGLE "0\n0\n");
+    assert_true(import_fails("empty.ply", NULL, "nothing in it that can be shown"));
 
     unsigned char bytes[44] = {0};
     const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
