@@ -122,6 +122,7 @@ typedef struct vec4 {
 #define LR_FLAG_SMOOTH 128u    /* triangle: its corners have normals, */
 #define LR_FLAG_UV 256u        /* texture coordinates, */
 #define LR_FLAG_COLORS 512u    /* colours */
+#define LR_FLAG_INWARD 1024u   /* spheres, open cones: not there as seen from outside */
 
 #define LR_PRIMITIVE_NONE 0xFFFFFFFFu
 

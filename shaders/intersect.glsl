@@ -25,7 +25,10 @@ vec2 intersect_unit_sphere(vec3 o, vec3 d, float inv_a)
 // Works in units of the radius, so spheres of 1e-20 and of 1e12 metres neither under- nor overflow.
 vec2 intersect_sphere(vec3 o, vec3 d, float inv_a, gpu_sphere s)
 {
-    return intersect_unit_sphere((o - s.center) * s.inv_radius, d, inv_a) * s.radius;
+    vec2 crossing = intersect_unit_sphere((o - s.center) * s.inv_radius, d, inv_a) * s.radius;
+    if (has_one_sided && (s.flags & LR_FLAG_INWARD) != 0u)
+        crossing.x = -1.0;
+    return crossing;
 }
 
 // The sheet's t = -(c + n . p0) / (n . d), with offset = -c. As the boundary of the half-space below
@@ -114,8 +117,9 @@ vec2 intersect_cone(vec3 so, vec3 sd, gpu_solid s)
     bool has_a = disc >= 0.0 && za >= 0.0 && za <= 1.0;
     bool has_b = disc >= 0.0 && zb >= 0.0 && zb <= 1.0;
     if (has_one_sided && (s.flags & LR_FLAG_ONE_SIDED) != 0u) {
-        has_a = has_a && leads_in(s, q + sd * ta, sd);
-        has_b = has_b && leads_in(s, q + sd * tb, sd);
+        bool outward = (s.flags & LR_FLAG_INWARD) == 0u;
+        has_a = has_a && leads_in(s, q + sd * ta, sd) == outward;
+        has_b = has_b && leads_in(s, q + sd * tb, sd) == outward;
     }
 
     float inverse = ex_rcp(away_from_zero(sd.z));

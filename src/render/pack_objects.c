@@ -103,10 +103,11 @@ static void set_ids(lr_primitive *p, uint32_t object, uint32_t flags)
 static uint32_t flags_of(const lr_scene *scene, uint32_t object, const lr_primitive *p)
 {
     const lr_material *m = material_of(scene, object);
+    bool inward = scene->objects[object].inward;
     return (p->encloses ? LR_FLAG_SOLID : 0) |
            (lr_color_is_black(m->transmit) ? 0 : LR_FLAG_TRANSPARENT) |
-           (scene->objects[object].shadow ? LR_FLAG_SHADOW : 0) |
-           (m->one_sided && p->sided ? LR_FLAG_ONE_SIDED : 0);
+           (scene->objects[object].shadow ? LR_FLAG_SHADOW : 0) | (inward ? LR_FLAG_INWARD : 0) |
+           ((m->one_sided || inward) && p->sided ? LR_FLAG_ONE_SIDED : 0);
 }
 
 static void note_use(uint32_t *constants, lr_list_kind list, uint32_t flags)
@@ -116,7 +117,7 @@ static void note_use(uint32_t *constants, lr_list_kind list, uint32_t flags)
     constants[LR_SPEC_TRANSPARENT] |= transparent;
     constants[LR_SPEC_TRANSPARENT_PLANES] |=
         list == LR_PLANES && (transparent || constants[LR_SPEC_CUTOUTS]);
-    constants[LR_SPEC_ONE_SIDED] |= (flags & LR_FLAG_ONE_SIDED) != 0;
+    constants[LR_SPEC_ONE_SIDED] |= (flags & (LR_FLAG_ONE_SIDED | LR_FLAG_INWARD)) != 0;
 }
 
 /* What every object becomes, for the time of packing. */

@@ -33,10 +33,9 @@ typedef struct nff_reader {
     lr_nff_text text;
     lr_scene_builder builder;
     lr_nff_parts parts;
-    lr_rows fills;       /* of the materials, in their order */
-    uint32_t material;   /* of the latest `f`; LR_NONE: none yet */
-    lr_nff_count inward; /* objects of which only the inside should show */
-    lr_nff_count empty;  /* spheres and cones without a size */
+    lr_rows fills;      /* of the materials, in their order */
+    uint32_t material;  /* of the latest `f`; LR_NONE: none yet */
+    lr_nff_count empty; /* spheres and cones without a size */
     bool has_view, has_object, told_fill;
 } nff_reader;
 
@@ -201,7 +200,6 @@ static bool add_material(nff_reader *reader, const fill *f, uint32_t line)
         .shininess = f->shine,
         .highlight = LR_HIGHLIGHT_PHONG,
         .ior = f->ior,
-        .one_sided = f->transmit == 0,
     };
     return true;
 }
@@ -268,12 +266,9 @@ static lr_object *add_object(nff_reader *reader, lr_object_kind kind, uint32_t l
 }
 
 /* Whether a negative radius hides the outside: transmitting surfaces have two sides. */
-static bool is_inward(nff_reader *reader, double radius, uint32_t line)
+static bool is_inward(const nff_reader *reader, double radius)
 {
-    bool inward = radius < 0 && reader->builder.scene->materials[reader->material].one_sided;
-    if (inward)
-        lr_nff_add_count(&reader->inward, line);
-    return inward;
+    return radius < 0 && reader->builder.scene->materials[reader->material].transmit.x == 0;
 }
 
 static bool read_sphere(nff_reader *reader, const lr_nff_word *at)
@@ -289,7 +284,7 @@ static bool read_sphere(nff_reader *reader, const lr_nff_word *at)
     lr_object *object = add_object(reader, LR_SPHERE, at->line);
     if (!object)
         return out_of_memory(reader);
-    object->inward = is_inward(reader, v[3], at->line);
+    object->inward = is_inward(reader, v[3]);
     object->sphere.center = vec3_of(v);
     object->sphere.radius = fabs(v[3]);
     return true;
@@ -318,7 +313,7 @@ static bool read_cone(nff_reader *reader, const lr_nff_word *at)
     if (!object)
         return out_of_memory(reader);
     object->open = true;
-    object->inward = is_inward(reader, fmin(v[3], v[7]), at->line);
+    object->inward = is_inward(reader, fmin(v[3], v[7]));
     object->cone.from = from;
     object->cone.to = to;
     object->cone.radius_from = fabs(v[3]);
@@ -427,7 +422,6 @@ static bool note_counts(nff_reader *reader)
         {&parts->vanished, "triangles too small for single precision, left out"},
         {&parts->turned, "normals of length 0, replaced by their polygon's"},
         {&reader->empty, "spheres and cones without a size, left out"},
-        {&reader->inward, "negative radii, whose objects show their outside as well"},
     };
     lr_scene *scene = reader->builder.scene;
     for (size_t i = 0; i < sizeof notes / sizeof *notes; i++)

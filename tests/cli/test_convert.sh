@@ -25,9 +25,15 @@ expect 3 "$lavaray" convert $scenes/bad.yaml "$folder/x.yaml" && says err 'bad\.
 nothing_in "$folder"
 
 # What is left out is told once a kind, with its number, and not with -q.
-expect 0 "$lavaray" convert $nff "$folder/a.pov"
-says err 'a\.pov: one-sided materials are written with two sides \(2\)' && one_line
-expect 0 "$lavaray" convert -q $nff "$folder/b.pov"
+cat >"$work/sided.yaml" <<'YAML'
+camera: {}
+objects:
+  - sphere: {material: {one_sided: true}}
+  - disk: {material: {one_sided: true}}
+YAML
+expect 0 "$lavaray" convert "$work/sided.yaml" "$folder/a.pov"
+says err "a\.pov: one-sided materials are written with two sides \(2\)" && one_line
+expect 0 "$lavaray" convert -q "$work/sided.yaml" "$folder/b.pov"
 [ ! -s "$work/err" ] || problem "-q prints: $(cat "$work/err")"
 same "$folder/a.pov" "$folder/b.pov"
 expect 0 "$lavaray" convert -q $nff "$folder/a.tac"

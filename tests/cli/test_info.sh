@@ -86,7 +86,7 @@ whole(0, 1, 0)
 real(1, 1, 1, 1, 0, 4, 3, 2, 0, 0, 0, 0, 0)
 whole(1)
 whole(2)
-material((1, 0.5, 0), 0.75, 0.25, 0, 8, 1, 1)
+material((1, 0.5, 0), 0.75, 0.25, 0, 8, 1, 0)
 material((1, 1, 1), 0, 0, 0.5, 1, 1.5, 0)
 whole(3)
 instance(0, 0, 1)
@@ -102,6 +102,6 @@ single(0, 0, 1, 1, 0, 1, 0, 1, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1)
 whole(0, 1, 2, 0)
 assert said["scene_sha256"] == hashlib.sha256(out).hexdigest()
 assert said["bounds"] == [[0, 0, 0], [1.5, 2.5, 3.5]]
-assert said["objects"]["mesh"] == 2 and said["lights"]["point"] == 1 and len(said["notes"]) == 2
+assert said["objects"]["mesh"] == 2 and said["lights"]["point"] == 1 and len(said["notes"]) == 1
 PYTHON
 finish

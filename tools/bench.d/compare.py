@@ -3,23 +3,19 @@ installed: two renders of the showcase that differ in their seeds and exposures,
 
 import os
 import shutil
-import statistics
+
+from common import LAVARAY, ROOT, ratio, run, summary
 
 
-def ratio(ours, theirs):
-    """The median ratio of their CPU seconds to ours, run by run."""
-    return round(statistics.median(t[0] / o[0] for o, t in zip(ours, theirs)), 2)
-
-
-def measure(lavaray, scene, root, work, count, run, summary):
-    """A dictionary of results; run measures a command, summary puts runs together."""
+def measure(scene, work, count):
+    """A dictionary of results."""
     pair = {}
     for ending in ("png", "ppm", "pfm"):
         pair[ending] = [os.path.join(work, "%s.%s" % (name, ending)) for name in "ab"]
         for path, flags in zip(pair[ending], (["--seed", "1"], ["--seed", "2", "--exposure", "0.1"])):
-            run([lavaray, "render", scene, "-q", "--size", "1920x1080", "--spp", "1", "--depth", "2",
+            run([LAVARAY, "render", scene, "-q", "--size", "1920x1080", "--spp", "1", "--depth", "2",
                  "-o", path] + flags)
-    ours = [lavaray, "compare"]
+    ours = [LAVARAY, "compare"]
     commands = {
         "exact_abs_png": ours + pair["png"] + ["--exact", "--abs", "0.1", "-q"],
         "exact_abs_ppm": ours + pair["ppm"] + ["--exact", "--abs", "0.1", "-q"],
@@ -33,7 +29,7 @@ def measure(lavaray, scene, root, work, count, run, summary):
     if idiff:
         commands["idiff_png"] = [idiff, "-fail", "0.1"] + pair["png"]
         commands["idiff_ppm"] = [idiff, "-fail", "0.1"] + pair["ppm"]
-    flip = shutil.which("flip", path=os.path.join(root, ".cache", "flip", "bin") + os.pathsep + os.environ["PATH"])
+    flip = shutil.which("flip", path=os.path.join(ROOT, ".cache", "flip", "bin") + os.pathsep + os.environ["PATH"])
     if flip:
         commands["flip_evaluator_png"] = [flip, "-r", pair["png"][0], "-t", pair["png"][1], "-nexm", "-nerm",
                                           "-d", work]
