@@ -228,10 +228,10 @@ typedef struct lr_render_stats {
     uint64_t dropped_nesting; /* ... or media lost because too many were nested */
     uint64_t non_finite;      /* contributions that were NaN or infinite, left out */
     uint64_t saturated;       /* contributions above the film's range, clipped to it */
-    double device_seconds, upload_seconds, compile_seconds, trace_seconds, read_back_seconds;
+    double device_seconds, build_seconds, upload_seconds, compile_seconds, trace_seconds, read_back_seconds;
     /* What all threads computed meanwhile, those of a software driver with them; trace_cpu_seconds
      * has the reading back in it. */
-    double upload_cpu_seconds, compile_cpu_seconds, trace_cpu_seconds;
+    double build_cpu_seconds, upload_cpu_seconds, compile_cpu_seconds, trace_cpu_seconds;
     double longest_pass_seconds; /* the longest wait for the device; a watchdog may end long ones */
     char hash[65];               /* of the picture; see lr_picture_hash */
 } lr_render_stats;

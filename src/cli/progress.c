@@ -118,7 +118,7 @@ bool progress_update(void *user, double fraction)
     }
     /* The first dispatches include the driver's own compilation, so tracing begins with the first
      * progress, not with the first call. */
-    if (fraction > 0 && strcmp(p->phase, "compiling kernels") == 0) {
+    if (fraction > 0 && strcmp(p->phase, "building and compiling") == 0) {
         progress_phase(p, "tracing");
     }
     double now = seconds_now();

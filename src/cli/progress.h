@@ -18,7 +18,8 @@ void progress_start(progress *p, bool quiet);
 /* The phase that begins now, such as "reading scene"; the text must outlive p. */
 void progress_phase(progress *p, const char *phase);
 
-/* For lr_render_options and lr_load_options: user is the progress. Returns false once the user has asked to stop. */
+/* For lr_render_options and lr_load_options: user is the progress. Returns false once the user has
+ * asked to stop. */
 bool progress_update(void *user, double fraction);
 
 /* Removes the bar, so that messages can be printed. p may be NULL. */

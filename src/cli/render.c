@@ -281,7 +281,7 @@ static int trace_and_write(const values *v, lr_device *device, const lr_scene *s
     lr_error error = {0};
     lr_picture picture = {0};
     lr_render_options render_options = make_options(v, p);
-    progress_phase(p, "compiling kernels");
+    progress_phase(p, "building and compiling");
     lr_status status = lr_render(device, scene, &render_options, &picture, &record->stats, &error);
     progress_clear(p);
     int code;

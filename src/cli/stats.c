@@ -81,12 +81,12 @@ void print_record(const render_record *r)
     print_count("not traced: weight", s->dropped_weight);
     print_count("media lost: nesting", s->dropped_nesting);
     fprintf(stderr,
-            "seconds  %.3f: device %.3f, scene %.3f, upload %.3f, compile %.3f, trace %.3f,\n"
-            "         read back %.3f, write %.3f; longest pass %.3f\n"
+            "seconds  %.3f: device %.3f, scene %.3f, build %.3f, upload %.3f,\n"
+            "         compile %.3f, trace %.3f, read back %.3f, write %.3f; longest pass %.3f\n"
             "memory   %.1f MiB at most\n",
-            r->total_seconds, r->device_seconds, r->parse_seconds, s->upload_seconds,
-            s->compile_seconds, s->trace_seconds, s->read_back_seconds, r->write_seconds,
-            s->longest_pass_seconds, (double)peak_memory() / (1 << 20));
+            r->total_seconds, r->device_seconds, r->parse_seconds, s->build_seconds,
+            s->upload_seconds, s->compile_seconds, s->trace_seconds, s->read_back_seconds,
+            r->write_seconds, s->longest_pass_seconds, (double)peak_memory() / (1 << 20));
 }
 
 void print_record_warnings(const render_record *r)
@@ -141,21 +141,22 @@ static json_t *record_json(const render_record *r)
     json_t *dropped =
         json_pack("{s:I, s:I, s:I}", "depth", (json_int_t)s->dropped_depth, "weight",
                   (json_int_t)s->dropped_weight, "nesting", (json_int_t)s->dropped_nesting);
-    json_t *cpu_seconds = json_pack(
-        "{s:f, s:f, s:f, s:f}", "upload", s->upload_cpu_seconds, "compile", s->compile_cpu_seconds,
-        "trace", s->trace_cpu_seconds, "total", (double)clock() / CLOCKS_PER_SEC);
+    json_t *cpu_seconds =
+        json_pack("{s:f, s:f, s:f, s:f, s:f}", "build", s->build_cpu_seconds, "upload",
+                  s->upload_cpu_seconds, "compile", s->compile_cpu_seconds, "trace",
+                  s->trace_cpu_seconds, "total", (double)clock() / CLOCKS_PER_SEC);
     json_t *seconds = json_pack(
-        "{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "device", r->device_seconds, "parse",
-        r->parse_seconds, "upload", s->upload_seconds, "compile", s->compile_seconds, "trace",
-        s->trace_seconds, "read_back", s->read_back_seconds, "write", r->write_seconds, "total",
-        r->total_seconds, "longest_pass", s->longest_pass_seconds);
-    return json_pack("{s:s, s:o*, s:o*, s:o*, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:f, s:o, s:o, s:I}",
-                     "version", LR_VERSION, "scene", scene, "output", output, "camera", camera,
-                     "device", device, "picture", picture, "rays", rays, "dropped", dropped,
-                     "passed", (json_int_t)s->passed, "non_finite", (json_int_t)s->non_finite,
-                     "saturated", (json_int_t)s->saturated, "rays_per_second", rays_per_second(s),
-                     "seconds", seconds, "cpu_seconds", cpu_seconds, "peak_memory_bytes",
-                     (json_int_t)peak_memory());
+        "{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "device", r->device_seconds, "parse",
+        r->parse_seconds, "build", s->build_seconds, "upload", s->upload_seconds, "compile",
+        s->compile_seconds, "trace", s->trace_seconds, "read_back", s->read_back_seconds, "write",
+        r->write_seconds, "total", r->total_seconds, "longest_pass", s->longest_pass_seconds);
+    return json_pack(
+        "{s:s, s:o*, s:o*, s:o*, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:f, s:o, s:o, s:I}", "version",
+        LR_VERSION, "scene", scene, "output", output, "camera", camera, "device", device, "picture",
+        picture, "rays", rays, "dropped", dropped, "passed", (json_int_t)s->passed, "non_finite",
+        (json_int_t)s->non_finite, "saturated", (json_int_t)s->saturated, "rays_per_second",
+        rays_per_second(s), "seconds", seconds, "cpu_seconds", cpu_seconds, "peak_memory_bytes",
+        (json_int_t)peak_memory());
 }
 
 int write_record(const render_record *r, const char *path)

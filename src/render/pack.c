@@ -122,19 +122,6 @@ static lr_status pack_materials(const lr_scene *scene, lr_packed_scene *packed, 
     return LR_OK;
 }
 
-/* The light of a scene that names none: from above and to the left of the camera. */
-static lr_light default_light(lr_vec3 forward, lr_vec3 right, lr_vec3 up)
-{
-    lr_vec3 direction =
-        lr_vec3_add(lr_vec3_scale(forward, 0.55),
-                    lr_vec3_sub(lr_vec3_scale(right, 0.35), lr_vec3_scale(up, 0.75)));
-    return (lr_light){.kind = LR_LIGHT_DIRECTIONAL,
-                      .color = {1, 1, 1},
-                      .intensity = 0.9,
-                      .direction = direction,
-                      .shadows = true};
-}
-
 static void pack_light(const lr_light *light, struct gpu_light *out)
 {
     *out = (struct gpu_light){
@@ -205,7 +192,7 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
         .fog_density = (float)(scene->fog_density * LOG2_E),
     };
     packed->constants[LR_SPEC_FOG] = scene->fog_density > 0;
-    lr_light light = default_light(forward, right, up);
+    lr_light light = lr_default_light(camera);
     lr_status status = lr_pack_texture_records(scene, packed, error);
     if (!status)
         status = pack_materials(scene, packed, error);

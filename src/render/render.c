@@ -141,8 +141,11 @@ lr_status lr_render(lr_device *device, const lr_scene *scene, const lr_render_op
     *stats = (lr_render_stats){.device_seconds = device->open_seconds};
     *picture = (lr_picture){0};
     lr_status status = settle(scene, options, &settings, error);
+    double start = lr_now(), cpu_start = lr_cpu_now();
     if (!status)
         status = lr_pack_scene(scene, &settings, &packed, error);
+    stats->build_seconds = lr_now() - start;
+    stats->build_cpu_seconds = lr_cpu_now() - cpu_start;
     if (!status) {
         picture->width = settings.crop_width;
         picture->height = settings.crop_height;

@@ -77,3 +77,17 @@ bool lr_scene_add_note(lr_scene_builder *builder, const char *format, ...)
     scene->notes[scene->note_count++] = note;
     return true;
 }
+
+lr_light lr_default_light(const lr_camera *camera)
+{
+    lr_vec3 forward = lr_vec3_normalize(lr_vec3_sub(camera->to, camera->from));
+    lr_vec3 right = lr_vec3_normalize(lr_vec3_cross(forward, camera->up));
+    lr_vec3 up = lr_vec3_cross(right, forward);
+    return (lr_light){
+        .kind = LR_LIGHT_DIRECTIONAL,
+        .color = {1, 1, 1},
+        .intensity = 0.9,
+        .direction = lr_vec3_add(lr_vec3_scale(forward, 0.55),
+                                 lr_vec3_sub(lr_vec3_scale(right, 0.35), lr_vec3_scale(up, 0.75))),
+        .shadows = true};
+}

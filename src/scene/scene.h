@@ -186,4 +186,7 @@ struct lr_scene {
     } image;
 };
 
+/* The light of a scene that names none: from above and to the left of the camera. */
+lr_light lr_default_light(const lr_camera *camera);
+
 #endif

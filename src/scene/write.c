@@ -96,20 +96,6 @@ void lr_camera_frame(const lr_scene *scene, const lr_camera *camera, lr_vec3 *fo
     *half_height = sine / cosine * (camera->fov_to_centers && rows > 1 ? rows / (rows - 1) : 1);
 }
 
-lr_light lr_default_light(const lr_camera *camera)
-{
-    lr_vec3 forward = lr_vec3_normalize(lr_vec3_sub(camera->to, camera->from));
-    lr_vec3 right = lr_vec3_normalize(lr_vec3_cross(forward, camera->up));
-    lr_vec3 up = lr_vec3_cross(right, forward);
-    return (lr_light){
-        .kind = LR_LIGHT_DIRECTIONAL,
-        .color = {1, 1, 1},
-        .intensity = 0.9,
-        .direction = lr_vec3_add(lr_vec3_scale(forward, 0.55),
-                                 lr_vec3_sub(lr_vec3_scale(right, 0.35), lr_vec3_scale(up, 0.75))),
-        .shadows = true};
-}
-
 const char *lr_side_path(const char *path, uint32_t number, const char *ending, char *buffer,
                          size_t size)
 {

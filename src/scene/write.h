@@ -51,9 +51,6 @@ double lr_color_greatest(lr_color color);
 void lr_camera_frame(const lr_scene *scene, const lr_camera *camera, lr_vec3 *forward,
                      lr_vec3 *right, lr_vec3 *up, double *half_height);
 
-/* The light that the renderer adds to a scene that names none, as seen by the camera. */
-lr_light lr_default_light(const lr_camera *camera);
-
 /* A file beside path: "out-1.ply" for "out.yaml", number 0 and ".ply". Returns buffer, or NULL when
  * it does not fit. */
 const char *lr_side_path(const char *path, uint32_t number, const char *ending, char *buffer,

@@ -76,7 +76,7 @@ on_terminal() {
         --size 640x480 --spp 4 $3" /dev/null </dev/null >"$work/tty" 2>&1
 }
 on_terminal 80 A=b ''
-for phase in 'reading scene' 'opening device' 'compiling kernels' 'tracing \[#'; do
+for phase in 'reading scene' 'opening device' 'building and compiling' 'tracing \[#'; do
     grep -q "$phase" "$work/tty" || problem "no '$phase' on a terminal"
 done
 grep -q $'\033\\[36m' "$work/tty" || problem 'no colours on a terminal'
