@@ -75,6 +75,8 @@ const uint stack_registers = uint(LR_TREE_DEPTH / LR_BATCH);
 // only what each round makes of the last one's value, as lavapipe goes on computing all else for it
 // while others are in the loop (docs/drivers.md): so `next` is the root again at the end, and leaves
 // are kept though there are none when a round begins.
+// Behind the outer loop a compiler knows that `next` is the root, but not whether a driver
+// ended the loop by force.
 #define VISIT_TREE(root, test)                                                              \
     {                                                                                              \
         uint stack[STACK_SIZE];                                                                    \
@@ -124,7 +126,7 @@ const uint stack_registers = uint(LR_TREE_DEPTH / LR_BATCH);
             if (next == root)                                                                      \
                 break;                                                                             \
         }                                                                                          \
-        finished = finished && next == root;                                                       \
+        finished = finished && hidden(next) == root;                                               \
     }
 
 // Runs `test` on each primitive i of a list that is too short for a tree.

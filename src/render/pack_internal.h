@@ -62,6 +62,13 @@ lr_status lr_pack_build(const lr_packed_scene *packed, const lr_bvh_box *boxes, 
 void lr_pack_place(lr_packed_scene *packed, const lr_bvh_box *box);
 void lr_pack_cells(lr_packed_scene *packed);
 
+/* pack_repeated.c: whether thousands of a tree's boxes are the same; and which primitives another
+ * one with the same box hides. False when memory is out. */
+bool lr_pack_has_heaps(const lr_bvh *bvh);
+typedef bool (*lr_pack_hides)(const void *context, uint32_t first, uint32_t later);
+bool lr_pack_find_repeated(const lr_bvh_box *boxes, uint32_t count, lr_pack_hides hides,
+                           const void *context, bool *hidden);
+
 /* Widens *reach, the greatest coordinate in a tree, by a box. */
 void lr_pack_reach(float *reach, const lr_bvh_box *box);
 

@@ -184,9 +184,90 @@ static lr_status no_memory(lr_error *error)
     return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's meshes");
 }
 
+/* ---- Triangles in the same place ---- */
+
+/* The facets of a tree that may have others in the same place. */
+typedef struct heap {
+    const mesh_packing *m;
+    const facet *facets;
+    bool shared;
+} heap;
+
+/* Whether no light gets through the object. */
+static bool is_opaque(const mesh_packing *m, uint32_t object)
+{
+    const lr_scene *scene = m->scene;
+    const lr_pattern *p = &scene->materials[scene->objects[object].material].color;
+    bool cut = p->kind == LR_PATTERN_IMAGE &&
+               scene->materials[scene->objects[object].material].alpha_cutoff > 0;
+    return !cut && !(m->object_flags[object] & LR_FLAG_TRANSPARENT);
+}
+
+/* Whether the picture would be the same without `later`: the first of two triangles with the same
+ * corners wins every tie, so the other one shows only where the first is not there or lets light
+ * through. */
+static bool hides(const void *context, uint32_t first, uint32_t later)
+{
+    const heap *h = context;
+    const facet *f[2] = {&h->facets[first], &h->facets[later]};
+    vec3 corners[2][3];
+    for (int i = 0; i < 2; i++) {
+        uint32_t vertices[3];
+        placement p = place_mesh(h->m, f[i], h->shared);
+        facet_vertices(&h->m->scene->meshes[f[i]->mesh], f[i]->triangle, p.mirrored, vertices);
+        facet_corners(&h->m->scene->meshes[f[i]->mesh], vertices, &p, corners[i]);
+    }
+    if (memcmp(corners[0], corners[1], sizeof corners[0]) != 0)
+        return false;
+    if (h->shared)
+        return true;
+    uint32_t a = h->m->object_flags[f[0]->object], b = h->m->object_flags[f[1]->object];
+    bool dark = (a & LR_FLAG_SHADOW) || !(b & LR_FLAG_SHADOW);
+    return is_opaque(h->m, f[0]->object) &&
+           (f[0]->object == f[1]->object || (!(a & LR_FLAG_ONE_SIDED) && dark));
+}
+
+/* Drops the facets that others hide; *count becomes how many are left. False when memory is out. */
+static bool drop_hidden(const heap *h, facet *facets, lr_bvh_box *boxes, uint32_t *count)
+{
+    const lr_scene *scene = h->m->scene;
+    for (uint32_t i = 0; i < scene->object_count && h->shared; i++)
+        if (scene->objects[i].kind == LR_MESH && scene->objects[i].mesh == facets[0].mesh &&
+            !is_opaque(h->m, i))
+            return true;
+    bool *hidden = lr_alloc_large(*count, sizeof *hidden);
+    bool found = hidden && lr_pack_find_repeated(boxes, *count, hides, h, hidden);
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < *count && found; i++) {
+        if (hidden[i])
+            continue;
+        facets[kept] = facets[i];
+        boxes[kept++] = boxes[i];
+    }
+    *count = found ? kept : *count;
+    free(hidden);
+    return found;
+}
+
+/* The tree over `count` facets, fewer afterwards where thousands are in the same place. */
+static lr_status build_facets(mesh_packing *m, facet *facets, lr_bvh_box *boxes, uint32_t *count,
+                              bool shared, mesh_tree *tree, lr_error *error)
+{
+    uint32_t leaf_size = *count > MANY ? LEAF_SIZE_OF_MANY : LEAF_SIZE, before = *count;
+    lr_status status = lr_pack_build(m->packed, boxes, *count, leaf_size, &tree->bvh, error);
+    if (status || !lr_pack_has_heaps(tree->bvh))
+        return status;
+    if (!drop_hidden(&(heap){m, facets, shared}, facets, boxes, count))
+        return no_memory(error);
+    if (*count == before)
+        return LR_OK;
+    lr_bvh_destroy(tree->bvh);
+    return lr_pack_build(m->packed, boxes, *count, leaf_size, &tree->bvh, error);
+}
+
 /* Builds the tree over `count` facets and packs their records in the order of its leaves. */
-static lr_status pack_facets(mesh_packing *m, const facet *facets, const lr_bvh_box *boxes,
-                             uint32_t count, bool shared, mesh_tree *tree, lr_error *error)
+static lr_status pack_facets(mesh_packing *m, facet *facets, lr_bvh_box *boxes, uint32_t count,
+                             bool shared, mesh_tree *tree, lr_error *error)
 {
     lr_packed_scene *packed = m->packed;
     for (uint32_t i = 0; i < count; i++) {
@@ -195,8 +276,7 @@ static lr_status pack_facets(mesh_packing *m, const facet *facets, const lr_bvh_
             lr_pack_place(packed, &boxes[i]);
     }
     tree->first = packed->frame.triangles.begin + m->triangle_count;
-    uint32_t leaf_size = count > MANY ? LEAF_SIZE_OF_MANY : LEAF_SIZE;
-    lr_status status = lr_pack_build(packed, boxes, count, leaf_size, &tree->bvh, error);
+    lr_status status = build_facets(m, facets, boxes, &count, shared, tree, error);
     if (status)
         return status;
     if (!lr_pack_reserve(packed, 3ull * count))
