@@ -1,359 +1,9 @@
-#include "render/wavefront.h"
+/* The passes of the ray tree. */
+#include "render/wavefront_internal.h"
 
 #include <string.h>
 
-#include "camera.spv.h"
 #include "gpu/commands.h"
-#include "nearest_packet.spv.h"
-#include "nearest_ray.spv.h"
-#include "shade.spv.h"
-#include "shadow_packet.spv.h"
-#include "shadow_ray.spv.h"
-#include "sort_place.spv.h"
-#include "sort_scan.spv.h"
-#include "trace.spv.h"
-
-/* Rays, towards lights too, times primitives that one pass may test: some 50 ms on two cores. */
-#define TESTS_PER_PASS (1u << 23)
-
-/* lavapipe of Mesa 22.3 silently ends all loops of an invocation after some 65,000 iterations
- * (docs/drivers.md); this stays far below. */
-#define LOOPS_PER_INVOCATION 16384
-
-/* Rays handed to a device at once: as many as it takes to fill a GPU, or as caches hold. */
-#define CHUNK_GPU 262144
-#define CHUNK_SOFTWARE 131072
-#define CHUNK_MIN 256
-
-#define CELLS_SIZE (4ull * LR_CELLS * LR_SHADOW_LIGHTS)
-
-/* RAYS of the kernels named packet. */
-#define PACKET_RAYS 4
-
-static uint32_t at_least(uint32_t value, uint32_t least)
-{
-    return value > least ? value : least;
-}
-
-static uint32_t at_most(uint32_t value, uint32_t most)
-{
-    return value < most ? value : most;
-}
-
-static uint32_t groups_for(uint32_t items, uint32_t size)
-{
-    return (items + size - 1) / size;
-}
-
-static bool has_trees(const lr_wavefront *w)
-{
-    return w->scene->constants[LR_SPEC_TREES];
-}
-
-/* How the work is cut up: passes that stay short whatever the number of primitives and lights. */
-static void plan(lr_wavefront *w, const lr_render_options *options)
-{
-    uint32_t primitives = w->scene->tests_per_ray + 8, lights = w->scene->light_count;
-    uint32_t fitting = TESTS_PER_PASS / primitives / (has_trees(w) ? 1 : 1 + lights);
-    bool software = w->device->info.software;
-    uint32_t chunk = at_most(fitting, software ? CHUNK_SOFTWARE : CHUNK_GPU);
-    uint32_t lights_a_segment = at_least(groups_for(lights, LR_SHADOW_LIGHTS), 1);
-    if (has_trees(w))
-        chunk /= lights_a_segment;
-    chunk = at_least(chunk, CHUNK_MIN);
-    uint32_t pixels = chunk;
-    /* A tile whose samples all fit in half a chunk keeps the film in the cache as well. */
-    if (software)
-        pixels =
-            at_most(chunk, at_least(chunk / 2 / at_least(w->scene->frame.samples, 1), 64 * 64));
-    w->tile_size = 256;
-    while (w->tile_size > 8 && w->tile_size * w->tile_size > pixels)
-        w->tile_size /= 2;
-    if (options->chunk_rays)
-        chunk = options->chunk_rays;
-    if (options->tile_size)
-        w->tile_size = at_least(at_most(options->tile_size, 1024), 1);
-    w->chunk_rays = at_least(chunk, w->tile_size * w->tile_size);
-    uint32_t at_once = at_least(LOOPS_PER_INVOCATION / primitives, 1);
-    w->lights_at_once = at_most(at_once, at_least(lights, 1));
-    w->shadow_room = 2 * w->chunk_rays * lights_a_segment;
-    /* Where a subgroup is one batch its rays go through a tree together. */
-    bool packets = software && w->device->shuffle_size == LR_BATCH && !options->single_rays;
-    w->rays_at_once = packets ? PACKET_RAYS : 1;
-}
-
-/* Bytes of a queue that has room for the children of one chunk. */
-static VkDeviceSize queue_size(const lr_wavefront *w)
-{
-    return 2 * sizeof(struct gpu_ray) * (VkDeviceSize)w->chunk_rays;
-}
-
-static VkDeviceSize found_size(const lr_wavefront *w)
-{
-    return has_trees(w) ? sizeof(struct gpu_hit) * (VkDeviceSize)w->chunk_rays : 16;
-}
-
-static VkDeviceSize shadow_size(const lr_wavefront *w)
-{
-    VkDeviceSize segment = sizeof(struct gpu_shadow_ray) * (VkDeviceSize)w->shadow_room;
-    return has_trees(w) ? LR_SHADOW_LIGHTS * segment : 16;
-}
-
-static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *error)
-{
-    uint32_t constants[LR_SPEC_COUNT];
-    memcpy(constants, w->scene->constants, sizeof constants);
-    uint32_t limit = w->device->limits.maxTexelBufferElements;
-    constants[LR_SPEC_TEXEL_LOADS] = texel_loads;
-    constants[LR_SPEC_TEXEL_QUEUES] =
-        texel_loads && queue_size(w) / 16 <= limit && shadow_size(w) / 16 <= limit;
-    constants[LR_SPEC_SHUFFLE] = w->device->shuffle_size >= LR_BATCH;
-    const struct {
-        const uint32_t *words;
-        size_t size;
-        VkPipeline *program;
-    } wanted[] = {
-        {camera_spv, sizeof camera_spv, &w->camera},
-        {trace_spv, sizeof trace_spv, &w->trace},
-        {shade_spv, sizeof shade_spv, &w->shade},
-        {sort_scan_spv, sizeof sort_scan_spv, &w->sort_scan},
-        {sort_place_spv, sizeof sort_place_spv, &w->sort_place},
-        {nearest_packet_spv, sizeof nearest_packet_spv, &w->nearest},
-        {shadow_packet_spv, sizeof shadow_packet_spv, &w->shadow},
-        {nearest_ray_spv, sizeof nearest_ray_spv, &w->nearest},
-        {shadow_ray_spv, sizeof shadow_ray_spv, &w->shadow},
-    };
-    /* The last two pairs exclude each other. */
-    const size_t always = 3, first_packet = 5, first_ray = 7;
-    size_t skipped = w->rays_at_once > 1 ? first_ray : first_packet;
-    size_t count = has_trees(w) ? sizeof wanted / sizeof *wanted : always;
-    lr_status status = LR_OK;
-    for (size_t i = 0; i < count && !status; i++) {
-        if (i == skipped || i == skipped + 1)
-            continue;
-        /* Only the shadow rays of children are sorted. */
-        if (i >= always && i < first_packet && !w->scene->constants[LR_SPEC_SCATTER])
-            continue;
-        lr_program_desc desc = {wanted[i].words, wanted[i].size / 4, constants, LR_SPEC_COUNT};
-        status = lr_program_create(w->device, &w->layout, &desc, wanted[i].program, error);
-    }
-    return status;
-}
-
-static lr_status create_buffers(lr_wavefront *w, lr_error *error)
-{
-    VkDeviceSize film_size = 4ull * LR_FILM_WORDS * w->tile_size * w->tile_size;
-    const struct {
-        lr_buffer *buffer;
-        lr_buffer_kind kind;
-        VkDeviceSize size;
-        const char *what;
-    } wanted[] = {
-        {&w->frame, LR_BUFFER_UNIFORM, sizeof(struct gpu_frame), "the frame"},
-        {&w->rows, LR_BUFFER_TEXEL, 16ull * w->scene->row_count, "the scene"},
-        {&w->film, LR_BUFFER_STORAGE, film_size, "the film"},
-        {&w->film_host, LR_BUFFER_HOST, film_size, "the film"},
-        {&w->counters, LR_BUFFER_STORAGE, sizeof(struct gpu_counters), "the counters"},
-        {&w->counters_host, LR_BUFFER_HOST, sizeof(struct gpu_counters), "the counters"},
-        {&w->hits, LR_BUFFER_TEXEL, sizeof(struct gpu_hit) * (VkDeviceSize)w->chunk_rays,
-         "the hits"},
-        {&w->found, LR_BUFFER_TEXEL, found_size(w), "the nearest hits"},
-        {&w->shadow_rays, LR_BUFFER_TEXEL, shadow_size(w), "the queue of shadow rays"},
-        {&w->cells, LR_BUFFER_STORAGE, has_trees(w) ? CELLS_SIZE : 16, "sorting"},
-        {&w->order, LR_BUFFER_STORAGE, shadow_size(w) / 8, "the order of shadow rays"},
-        {&w->none, LR_BUFFER_TEXEL, 256, "nothing"},
-    };
-    lr_status status = LR_OK;
-    for (size_t i = 0; i < sizeof wanted / sizeof *wanted && !status; i++)
-        status = lr_buffer_create(w->device, wanted[i].kind, wanted[i].size, wanted[i].what,
-                                  wanted[i].buffer, error);
-    if (!status)
-        status =
-            lr_buffer_upload(w->device, &w->frame, &w->scene->frame, sizeof w->scene->frame, error);
-    if (!status)
-        status = lr_buffer_upload(w->device, &w->rows, w->scene->rows,
-                                  16 * (size_t)w->scene->row_count, error);
-    return status;
-}
-
-static lr_status create_layout(lr_wavefront *w, lr_error *error)
-{
-    VkDescriptorType types[LR_BIND_COUNT];
-    for (uint32_t i = 0; i < LR_BIND_COUNT; i++)
-        types[i] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    types[LR_BIND_FRAME] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-    types[LR_BIND_SCENE_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-    types[LR_BIND_RAYS_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-    types[LR_BIND_HITS_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-    types[LR_BIND_FOUND_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-    types[LR_BIND_SHADOWS_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-    lr_layout_desc desc = {types, LR_BIND_COUNT, sizeof(struct gpu_work), 2};
-    return lr_layout_create(w->device, &desc, &w->layout, error);
-}
-
-/* Gives an empty queue a buffer for the children of one chunk. */
-static lr_status open_queue(lr_wavefront *w, lr_queue *queue, lr_error *error)
-{
-    if (queue->rays)
-        return LR_OK;
-    if (w->unused_count == 0) {
-        lr_buffer *buffer = &w->pool[w->pool_count];
-        lr_status status = lr_buffer_create(w->device, LR_BUFFER_TEXEL, queue_size(w),
-                                            "the queue of rays", buffer, error);
-        if (status)
-            return status;
-        w->pool_count++;
-        w->unused[w->unused_count++] = buffer;
-    }
-    queue->rays = w->unused[--w->unused_count];
-    return LR_OK;
-}
-
-static void close_if_empty(lr_wavefront *w, lr_queue *queue)
-{
-    if (!queue->rays || queue->count > 0)
-        return;
-    w->unused[w->unused_count++] = queue->rays;
-    queue->rays = NULL;
-}
-
-/* A scene may be too large for a storage buffer, and is then read as a texel buffer only. */
-static bool storage_fits(const lr_wavefront *w)
-{
-    return w->rows.size <= w->device->limits.maxStorageBufferRange;
-}
-
-/* The buffers of the kernels that read the rays of one queue and write those of another. */
-static void list_buffers(const lr_wavefront *w, const lr_buffer *rays_in, const lr_buffer *rays_out,
-                         const lr_buffer *buffers[LR_BIND_COUNT])
-{
-    const lr_buffer *list[LR_BIND_COUNT] = {
-        [LR_BIND_FRAME] = &w->frame,
-        [LR_BIND_SCENE_TEXEL] = w->rows.view ? &w->rows : &w->none,
-        [LR_BIND_SCENE_ROWS] = storage_fits(w) ? &w->rows : &w->none,
-        [LR_BIND_FILM] = &w->film,
-        [LR_BIND_COUNTERS] = &w->counters,
-        [LR_BIND_RAYS_IN] = rays_in,
-        [LR_BIND_RAYS_OUT] = rays_out,
-        [LR_BIND_HITS] = &w->hits,
-        [LR_BIND_RAYS_TEXEL] = rays_in->view ? rays_in : &w->none,
-        [LR_BIND_HITS_TEXEL] = w->hits.view ? &w->hits : &w->none,
-        [LR_BIND_FOUND] = &w->found,
-        [LR_BIND_FOUND_TEXEL] = w->found.view ? &w->found : &w->none,
-        [LR_BIND_SHADOWS] = &w->shadow_rays,
-        [LR_BIND_SHADOWS_TEXEL] = w->shadow_rays.view ? &w->shadow_rays : &w->none,
-        [LR_BIND_CELLS] = &w->cells,
-        [LR_BIND_ORDER] = &w->order,
-    };
-    memcpy(buffers, list, sizeof list);
-}
-
-static lr_status create_sets(lr_wavefront *w, lr_error *error)
-{
-    const lr_buffer *buffers[LR_BIND_COUNT];
-    list_buffers(w, &w->none, &w->none, buffers);
-    lr_status status = lr_set_create(w->device, &w->layout, buffers, &w->camera_set, error);
-    if (!status)
-        status = lr_set_create(w->device, &w->layout, buffers, &w->set, error);
-    return status;
-}
-
-/* Opens the queues of a pass and points the sets at them. */
-static lr_status open_generation(lr_wavefront *w, uint32_t generation, lr_error *error)
-{
-    lr_queue *queue = &w->queues[generation], *next = queue + 1;
-    bool children = w->scene->constants[LR_SPEC_SCATTER];
-    lr_status status = open_queue(w, queue, error);
-    if (!status && children)
-        status = open_queue(w, next, error);
-    if (status)
-        return status;
-    const lr_buffer *buffers[LR_BIND_COUNT];
-    list_buffers(w, queue->rays, children ? next->rays : &w->none, buffers);
-    lr_set_write(w->device, &w->layout, buffers, w->set);
-    if (generation == 0) {
-        list_buffers(w, &w->none, queue->rays, buffers);
-        lr_set_write(w->device, &w->layout, buffers, w->camera_set);
-    }
-    return LR_OK;
-}
-
-static void reset_counters(lr_wavefront *w)
-{
-    struct gpu_counters zero = {.hit_groups_y = 1, .hit_groups_z = 1};
-    lr_commands_write(w->device, &w->counters, &zero, sizeof zero);
-}
-
-/* Drivers compile a kernel when it first runs, so each runs once here on nothing. */
-static lr_status warm_up(lr_wavefront *w, lr_error *error)
-{
-    lr_status status = lr_commands_begin(w->device, error);
-    if (status)
-        return status;
-    struct gpu_work nothing = {0};
-    reset_counters(w);
-    const VkPipeline programs[] = {w->camera, w->trace,     w->shade,     w->nearest,
-                                   w->shadow, w->sort_scan, w->sort_place};
-    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) {
-        if (!programs[i])
-            continue;
-        lr_commands_barrier(w->device);
-        lr_commands_dispatch(w->device, &w->layout, programs[i], w->set, &nothing, 1, 1, 1);
-    }
-    return lr_commands_finish(w->device, error);
-}
-
-lr_status lr_wavefront_create(lr_device *device, const lr_packed_scene *scene,
-                              const lr_render_options *options, lr_render_stats *stats,
-                              lr_wavefront *wavefront, lr_error *error)
-{
-    *wavefront = (lr_wavefront){.device = device, .scene = scene, .stats = stats};
-    lr_wavefront *w = wavefront;
-    plan(w, options);
-    double start = lr_now(), cpu_start = lr_cpu_now();
-    lr_status status = create_layout(w, error);
-    if (!status)
-        status = create_buffers(w, error);
-    if (!status)
-        status = create_sets(w, error);
-    if (!status)
-        status = open_generation(w, 0, error);
-    double uploaded = lr_now();
-    stats->upload_cpu_seconds += lr_cpu_now() - cpu_start;
-    cpu_start = lr_cpu_now();
-    bool texel_loads = w->rows.view && !(options->storage_loads && storage_fits(w));
-    if (!status)
-        status = create_programs(w, texel_loads, error);
-    if (!status)
-        status = warm_up(w, error);
-    stats->upload_seconds += uploaded - start;
-    stats->compile_seconds += lr_now() - uploaded;
-    stats->compile_cpu_seconds += lr_cpu_now() - cpu_start;
-    if (status)
-        lr_wavefront_destroy(w);
-    return status;
-}
-
-void lr_wavefront_destroy(lr_wavefront *wavefront)
-{
-    lr_wavefront *w = wavefront;
-    if (!w->device)
-        return;
-    VkPipeline programs[] = {w->camera, w->trace,     w->shade,     w->nearest,
-                             w->shadow, w->sort_scan, w->sort_place};
-    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
-        if (programs[i])
-            w->device->vk.vkDestroyPipeline(w->device->handle, programs[i], NULL);
-    lr_layout_destroy(w->device, &w->layout);
-    lr_buffer *buffers[] = {&w->frame,    &w->rows,          &w->film,  &w->film_host,
-                            &w->counters, &w->counters_host, &w->hits,  &w->none,
-                            &w->found,    &w->shadow_rays,   &w->cells, &w->order};
-    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
-        lr_buffer_destroy(w->device, buffers[i]);
-    for (uint32_t i = 0; i < w->pool_count; i++)
-        lr_buffer_destroy(w->device, &w->pool[i]);
-    *w = (lr_wavefront){0};
-}
 
 /* Shades the hits of a pass: in several dispatches when there are many lights. */
 static void record_shade(lr_wavefront *w, struct gpu_work *work)
@@ -469,7 +119,7 @@ static lr_status drain_shadows(lr_wavefront *w, lr_error *error)
     lr_status status = lr_commands_begin(w->device, error);
     if (status)
         return status;
-    reset_counters(w);
+    wavefront_reset_counters(w);
     lr_commands_barrier(w->device);
     if (w->shadows_sorted)
         record_sort(w);
@@ -510,7 +160,7 @@ static lr_status make_shadow_room(lr_wavefront *w, uint32_t rays, bool sorted, l
 static lr_status run_pass(lr_wavefront *w, uint32_t generation, struct gpu_work *work,
                           const uint32_t camera_groups[3], uint32_t rays, lr_error *error)
 {
-    lr_status status = open_generation(w, generation, error);
+    lr_status status = wavefront_open_generation(w, generation, error);
     if (!status)
         status = make_shadow_room(w, rays, generation > 0, error);
     if (!status)
@@ -520,7 +170,7 @@ static lr_status run_pass(lr_wavefront *w, uint32_t generation, struct gpu_work 
     work->count = rays;
     if (w->shadows_sorted && waiting_shadows(w) == 0)
         lr_commands_zero(w->device, &w->cells, w->cells.size);
-    reset_counters(w);
+    wavefront_reset_counters(w);
     lr_commands_barrier(w->device);
     if (camera_groups) {
         lr_commands_dispatch(w->device, &w->layout, w->camera, w->camera_set, work,
@@ -538,8 +188,8 @@ static lr_status run_pass(lr_wavefront *w, uint32_t generation, struct gpu_work 
     status = finish_pass(w, error);
     if (!status)
         status = take_counts(w, rays, generation, error);
-    close_if_empty(w, &w->queues[generation]);
-    close_if_empty(w, &w->queues[generation + 1]);
+    wavefront_close_if_empty(w, &w->queues[generation]);
+    wavefront_close_if_empty(w, &w->queues[generation + 1]);
     return status;
 }
 

@@ -1,75 +1,24 @@
 /* Times builds of the hierarchy, and Embree's of the same triangles where it is installed: JSON for
  * `tools/bench --bvh`. Usage: bench_bvh RUNS. */
 #include <stdio.h>
-#include <stdlib.h>
-#include <sys/resource.h>
-#include <time.h>
-
-#include <jansson.h>
 #ifdef HAVE_EMBREE
 #include <embree3/rtcore.h>
 #endif
 
 #include "bvh_meshes.h"
-
-enum { RUNS_MAX = 1000 };
-
-typedef struct timing {
-    double cpu[RUNS_MAX], wall[RUNS_MAX];
-    int count;
-} timing;
-
-static double cpu_seconds(void)
-{
-    struct rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-}
-
-static double wall_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static void start(timing *t)
-{
-    t->cpu[t->count] = -cpu_seconds();
-    t->wall[t->count] = -wall_seconds();
-}
-
-static void stop(timing *t)
-{
-    t->cpu[t->count] += cpu_seconds();
-    t->wall[t->count++] += wall_seconds();
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double *x = a, *y = b;
-    return *x < *y ? -1 : *x > *y;
-}
-
-static json_t *summary(timing *t)
-{
-    qsort(t->cpu, (size_t)t->count, sizeof *t->cpu, ascending);
-    qsort(t->wall, (size_t)t->count, sizeof *t->wall, ascending);
-    return json_pack("{s:f, s:f, s:i}", "cpu_seconds", t->cpu[t->count / 2], "wall_seconds",
-                     t->wall[t->count / 2], "runs", t->count);
-}
+#include "timing.h"
 
 static lr_bvh *build(const mesh *m, timing *t)
 {
     lr_bvh *bvh;
     lr_error error;
-    start(t);
+    timing_start(t);
     if (lr_bvh_create(m->boxes, m->count, NULL, &bvh, &error) != LR_OK) {
         fprintf(stderr, "bench_bvh: %s\n", error.message);
         exit(1);
     }
-    stop(t);
+    timing_stop(t);
+    timing_next(t);
     return bvh;
 }
 
@@ -82,11 +31,12 @@ static RTCScene embree_build(RTCDevice device, const mesh *m, timing *t)
                                0, 12, m->vertex_count);
     rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m->triangles,
                                0, 12, m->count);
-    start(t);
+    timing_start(t);
     rtcCommitGeometry(triangles);
     rtcAttachGeometry(scene, triangles);
     rtcCommitScene(scene);
-    stop(t);
+    timing_stop(t);
+    timing_next(t);
     rtcReleaseGeometry(triangles);
     return scene;
 }
@@ -105,7 +55,7 @@ static json_t *measure(mesh m, int runs)
 {
     static timing ours, embree_first, embree_second;
     lr_bvh *bvh = NULL;
-    ours.count = embree_first.count = embree_second.count = 0;
+    ours = embree_first = embree_second = (timing){0};
     for (int i = 0; i < runs; i++) {
         lr_bvh_destroy(bvh);
         bvh = build(&m, &ours);
@@ -127,8 +77,7 @@ static json_t *measure(mesh m, int runs)
 
 int main(int count, char **arguments)
 {
-    int runs = count > 1 ? atoi(arguments[1]) : 5;
-    runs = runs < 1 ? 1 : runs > RUNS_MAX ? RUNS_MAX : runs;
+    int runs = runs_from(count > 1 ? arguments[1] : "5");
     json_t *results = json_pack("{s:o, s:o, s:o}", "terrain_70k", measure(mesh_terrain(187), runs),
                                 "terrain_1m", measure(mesh_terrain(708), runs), "soup_1m",
                                 measure(mesh_soup(1000000, 0.01f, 1), runs));

@@ -29,7 +29,8 @@ def measure(scene, work, count):
     if idiff:
         commands["idiff_png"] = [idiff, "-fail", "0.1"] + pair["png"]
         commands["idiff_ppm"] = [idiff, "-fail", "0.1"] + pair["ppm"]
-    flip = shutil.which("flip", path=os.path.join(ROOT, ".cache", "flip", "bin") + os.pathsep + os.environ["PATH"])
+    own = os.path.join(ROOT, ".cache", "flip", "bin")
+    flip = shutil.which("flip", path=own + os.pathsep + os.environ["PATH"])
     if flip:
         commands["flip_evaluator_png"] = [flip, "-r", pair["png"][0], "-t", pair["png"][1], "-nexm", "-nerm",
                                           "-d", work]

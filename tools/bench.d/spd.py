@@ -45,15 +45,6 @@ def list_commands(path, scene, width, height):
     return commands
 
 
-def measure_tracing(command, work):
-    """One run on one thread of the device: the CPU seconds that grow with the pixels, and what the clock
-    says of the tracing, which is the same where nothing else runs."""
-    environment = dict(os.environ, LP_NUM_THREADS="1")
-    one_pixel = run(command + ["--crop", "0,0,1,1"], environment, folder=work)
-    whole = run(command, environment, folder=work)
-    return whole[0] - one_pixel[0], read_stats(os.path.join(work, "stats.json"))["seconds"]["trace"]
-
-
 def measure_picture(scene, data, width, height, count):
     with tempfile.TemporaryDirectory() as work:
         path = prepare(scene, data, width, height, work)
@@ -63,11 +54,11 @@ def measure_picture(scene, data, width, height, count):
             for name, command in commands.items():
                 runs[name].append(run(command, folder=work))
             last = read_stats(os.path.join(work, "stats.json"))
-            trace.append(measure_tracing(commands["lavaray"], work))
+            trace.append((last["cpu_seconds"]["trace"], last["seconds"]["trace"]))
         # The first round fills the shader cache.
         runs, trace = {name: r[1:] for name, r in runs.items()}, trace[1:]
     result = {"width": width, "height": height, "rays": last["rays"], "seconds": last["seconds"],
-              "trace_one_thread": summary(trace)}
+              "trace": summary(trace)}
     result.update({name: summary(r) for name, r in runs.items()})
     peers = [name for name in runs if name != "lavaray"]
     if peers:
@@ -93,13 +84,16 @@ def markdown(result):
     """The table in docs/performance.md."""
     if "skipped" in result:
         return result["skipped"]
-    columns = ["trace_one_thread", "povray_boxes", "povray_bsp", "tachyon"]
+    missing = [peer for peer in ("povray", "tachyon") if not result[peer]]
+    columns = ["trace", "povray_boxes", "povray_bsp", "tachyon"]
     lines = ["| CPU s | lavaray | of it tracing | POV-Ray, boxes | POV-Ray, BSP | Tachyon | process ratio "
              "| trace ratio |",
              "|---|---|---|---|---|---|---|---|"]
-    for name, p in result.get("pictures", {}).items():
+    for name, p in result["pictures"].items():
         seconds = ["%.2f" % p[c]["cpu_seconds"] if c in p else "" for c in columns]
         lines.append("| %s, %d×%d | **%.2f** | %s | %s | %s | %s | %s | %s |" % (
             name.replace("_1080p", "").replace("_", " "), p["width"], p["height"],
             p["lavaray"]["cpu_seconds"], *seconds, p.get("process_ratio", ""), p.get("trace_ratio", "")))
+    if missing:
+        lines += ["", "Not installed: " + ", ".join(missing)]
     return "\n".join(lines)

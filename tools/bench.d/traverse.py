@@ -1,0 +1,127 @@
+"""Large meshes: the kernels that find hits, beside Embree on the same rays (traverse.c); what a mesh
+takes until it is on the device; and how a frame's time grows with triangles and pixels."""
+
+import json
+import os
+import subprocess
+import tempfile
+
+import plot
+from common import LAVARAY, ROOT, machine, read_stats, run, summary, write_text
+
+BUILD = os.path.join(ROOT, "build", "release")
+PROGRAM = os.path.join(BUILD, "bench_traverse")
+# Hills of 2 side^2 triangles.
+SIDES = {"10k": 71, "100k": 224, "1M": 708, "10M": 2236}
+SIZES = [(384, 256), (768, 512), (1536, 1024), (3456, 2304)]
+SCENE = """camera: {from: [0.5, 1.1, -0.6], to: [0.5, 0.4, 0.4], fov: 40}
+lights:
+  - point: {position: [-1, 2, 0.2]}
+objects:
+  - mesh: {file: hills.ply}
+"""
+
+
+def build():
+    subprocess.run(["cmake", "--build", BUILD, "--target", "bench_traverse"], check=True,
+                   stdout=subprocess.DEVNULL)
+
+
+def write_hills(side, work):
+    path = os.path.join(work, "hills.ply")
+    subprocess.run([PROGRAM, "write", str(side), path], check=True)
+    return path
+
+
+def measure(count):
+    build()
+    result = {"machine": machine()}
+    for name, side in (("70k", 187), ("1M", 708)):
+        with tempfile.TemporaryDirectory() as work:
+            command = [PROGRAM, "measure", str(side), write_hills(side, work), str(count)]
+            told = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        result[name] = json.loads(told)
+    return result
+
+
+def percent(ours, theirs):
+    return "%.0f %%" % (100 * ours / theirs)
+
+
+def markdown(result):
+    lines = ["| Mray per CPU second | lavaray, packets | Embree, packets of 16 | | lavaray, single rays "
+             "| Embree, single rays | |", "|---|---|---|---|---|---|---|"]
+    for size in ("70k", "1M"):
+        for kind in ("primary", "shadow", "bounce"):
+            cells = []
+            for way in ("packets", "single"):
+                rates = [result[size][kind].get("%s_%s" % (who, way), {}).get("mrays_per_cpu_second")
+                         for who in ("lavaray", "embree")]
+                cells += ["**%.2f**" % rates[0], "%.2f" % rates[1] if rates[1] else "",
+                          percent(*rates) if rates[1] else ""]
+            lines.append("| %s triangles, %s | %s |" % (size, kind, " | ".join(cells)))
+    if "embree_packets" not in result["70k"]["primary"]:
+        lines += ["", "Not installed: libembree-dev"]
+    lines += ["", "| CPU s | read the PLY file | pack and build | upload | bytes a triangle on the device "
+              "| peak of the host |", "|---|---|---|---|---|---|"]
+    for size in ("70k", "1M"):
+        costs = result[size]["costs"]
+        lines.append("| %s | %.2f | %.2f | %.2f | %.0f | %.0f MB |" % (
+            (size,) + tuple(costs[step]["cpu_seconds"] for step in ("load", "build", "upload")) +
+            (costs["device_bytes_per_triangle"], 1e-6 * costs["peak_bytes"])))
+    return "\n".join(lines)
+
+
+def measure_frame(work, width, height, count):
+    write_text(os.path.join(work, "scene.yaml"), SCENE)
+    command = [LAVARAY, "render", "scene.yaml", "-q", "--spp", "1", "--size", "%dx%d" % (width, height),
+               "-o", "a.ppm", "--stats", "stats.json"]
+    runs, trace = [], []
+    for _ in range(count + 1):
+        runs.append(run(command, folder=work))
+        stats = read_stats(os.path.join(work, "stats.json"))
+        trace.append((stats["cpu_seconds"]["trace"], stats["seconds"]["trace"]))
+    rays = stats["rays"]["total"]
+    return {"width": width, "height": height, "rays": rays, "process": summary(runs[1:]),
+            "trace": summary(trace[1:]), "peak_memory_bytes": stats["peak_memory_bytes"]}
+
+
+def measure_growth(count, full, picture):
+    build()
+    result = {"machine": machine(), "triangles": {}, "pixels": {}}
+    for name, side in SIDES.items():
+        if name == "10M" and not full:
+            continue
+        with tempfile.TemporaryDirectory() as work:
+            write_hills(side, work)
+            frame = measure_frame(work, 512, 512, count)
+            result["triangles"][name] = dict(frame, triangles=2 * side * side)
+            if name == "100k":
+                for width, height in SIZES:
+                    frame = measure_frame(work, width, height, count)
+                    result["pixels"]["%.1f MP" % (1e-6 * width * height)] = frame
+    if picture:
+        write_text(picture, plot.draw([curves(result["triangles"], "triangles, 512×512 pixels",
+                                              lambda f: f["triangles"]),
+                                       curves(result["pixels"], "pixels, 100,352 triangles",
+                                              lambda f: f["width"] * f["height"])]))
+    return result
+
+
+def curves(frames, title, x):
+    """What plot.draw makes a panel of."""
+    return {"title": title, "unit": "CPU seconds",
+            "curves": {"the whole process": [(x(f), f["process"]["cpu_seconds"]) for f in frames.values()],
+                       "tracing and shading": [(x(f), f["trace"]["cpu_seconds"]) for f in frames.values()]}}
+
+
+def growth_markdown(result):
+    lines = ["| | rays | whole process, CPU s | tracing and shading, CPU s | peak of the host |",
+             "|---|---|---|---|---|"]
+    for kind in ("triangles", "pixels"):
+        for name, f in result[kind].items():
+            lines.append("| %s, %d×%d | %.2f M | %.2f | %.3f | %.0f MB |" % (
+                name + (" triangles" if kind == "triangles" else ""), f["width"], f["height"],
+                1e-6 * f["rays"], f["process"]["cpu_seconds"], f["trace"]["cpu_seconds"],
+                1e-6 * f["peak_memory_bytes"]))
+    return "\n".join(lines)
