@@ -3,7 +3,6 @@
 #ifndef INSTANCE_GLSL
 #define INSTANCE_GLSL
 
-#include "mesh.glsl"
 #include "tree.glsl"
 #include "triangle.glsl"
 
@@ -11,10 +10,8 @@ gpu_instance joint_instance(uint i)
 {
     uint at = frame.instances.base + 4u * i;
     uvec4 held = hold_rows(at, 4u);
-    uvec4 a = held_row(held, at, 0u), b = held_row(held, at, 1u);
-    uvec4 c = held_row(held, at, 2u), d = held_row(held, at, 3u);
-    return gpu_instance(uintBitsToFloat(a), uintBitsToFloat(b), uintBitsToFloat(c), d.x, d.y,
-                        uintBitsToFloat(d.z), d.w);
+    return instance_of(held_row(held, at, 0u), held_row(held, at, 1u), held_row(held, at, 2u),
+                       held_row(held, at, 3u));
 }
 
 vec3 world_o[RAYS], world_d[RAYS];

@@ -8,26 +8,39 @@
 const gpu_instance no_instance =
     gpu_instance(vec4(0.0), vec4(0.0), vec4(0.0), 0u, 0u, 0.0, 0u);
 
+gpu_instance instance_of(uvec4 a, uvec4 b, uvec4 c, uvec4 d)
+{
+    return gpu_instance(uintBitsToFloat(a), uintBitsToFloat(b), uintBitsToFloat(c), d.x, d.y,
+                        uintBitsToFloat(d.z), d.w);
+}
+
 gpu_instance load_instance(uint i)
 {
     uint at = frame.instances.base + 4u * i;
-    uvec4 d = scene_row(at + 3u);
-    return gpu_instance(scene_row_float(at), scene_row_float(at + 1u), scene_row_float(at + 2u), d.x,
-                        d.y, uintBitsToFloat(d.z), d.w);
+    return instance_of(scene_row(at), scene_row(at + 1u), scene_row(at + 2u), scene_row(at + 3u));
+}
+
+gpu_triangle triangle_of(uvec4 a, uvec4 b, uvec4 c)
+{
+    return gpu_triangle(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w,
+                        uintBitsToFloat(c.xyz), c.w);
 }
 
 gpu_triangle load_triangle(uint i)
 {
     uint at = frame.triangles.base + 3u * i;
-    uvec4 a = scene_row(at), b = scene_row(at + 1u), c = scene_row(at + 2u);
-    return gpu_triangle(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w,
-                        uintBitsToFloat(c.xyz), c.w);
+    return triangle_of(scene_row(at), scene_row(at + 1u), scene_row(at + 2u));
 }
 
 gpu_vertex load_vertex(uint row)
 {
     uvec4 a = scene_row(row);
     return gpu_vertex(a.x, uintBitsToFloat(a.y), uintBitsToFloat(a.z), a.w);
+}
+
+vec2 uv_between(gpu_vertex a, gpu_vertex b, gpu_vertex c, vec3 weight)
+{
+    return vec2(a.u, a.v) * weight.x + vec2(b.u, b.v) * weight.y + vec2(c.u, c.v) * weight.z;
 }
 
 // The texture coordinates of triangle i where its corners have these weights; 0 if its mesh has none.
@@ -37,7 +50,7 @@ vec2 mesh_uv(uint i, uint flags, vec3 weight)
     if (has_corners && (flags & LR_FLAG_UV) != 0u) {
         uvec4 corners = scene_row(frame.corners + i - frame.triangles.begin);
         gpu_vertex a = load_vertex(corners.x), b = load_vertex(corners.y), c = load_vertex(corners.z);
-        uv = vec2(a.u, a.v) * weight.x + vec2(b.u, b.v) * weight.y + vec2(c.u, c.v) * weight.z;
+        uv = uv_between(a, b, c, weight);
     }
     return uv;
 }

@@ -1,8 +1,8 @@
 // What each ray of a queue meets first, in scenes with trees.
 #include "gpu_layout.h"
 #include "bindings.glsl"
-#include "instance.glsl"
 #include "queue.glsl"
+#include "visit.glsl"
 
 layout(local_size_x = LR_GROUP_SIZE) in;
 
@@ -26,33 +26,33 @@ void keep_crossing(uint k, bool valid, vec2 crossing, uint primitive, uint objec
     keep(k, valid, crossing.x > 0.0 ? crossing.x : crossing.y, primitive, object, 0u);
 }
 
-void nearest_sphere(uint i, bool valid)
+void test_sphere(uint i, bool valid)
 {
     gpu_sphere s = joint_sphere(i);
     EACH_RAY keep_crossing(k, valid, intersect_sphere(ray_o[k], ray_d[k], ray_inv_a[k], s), i,
                            s.object);
 }
 
-void nearest_flat(uint i, bool valid)
+void test_flat(uint i, bool valid)
 {
     gpu_flat f = joint_flat(i);
     EACH_RAY keep_crossing(k, valid, intersect_flat(ray_o[k], ray_d[k], f), i, f.object);
 }
 
-void nearest_solid(uint i, bool valid)
+void test_solid(uint i, bool valid)
 {
     gpu_solid s = joint_solid(i);
     EACH_RAY keep_crossing(k, valid, intersect_solid(ray_o[k], ray_d[k], s, i), i, s.object);
 }
 
-void nearest_plane(uint i, bool valid)
+void test_plane(uint i, bool valid)
 {
     gpu_plane p = load_plane(i);
     EACH_RAY keep_crossing(k, valid, intersect_plane(ray_o[k], ray_d[k], p.normal, p.offset), i,
                            p.object);
 }
 
-void nearest_triangle(uint i, bool valid, gpu_instance place)
+void test_triangle(uint i, bool valid, gpu_instance place)
 {
     gpu_triangle f = joint_triangle(i);
     EACH_RAY
@@ -62,15 +62,6 @@ void nearest_triangle(uint i, bool valid, gpu_instance place)
         bool there = valid && !(sided && !hit.front);
         keep(k, there, hit.t, i, f.object + place.object, f.order);
     }
-}
-
-void nearest_instance(uint i, bool valid)
-{
-    gpu_instance place = joint_instance(i);
-    EACH_RAY enter_instance(k, place);
-    if (valid)
-        VISIT_TREE(place.nodes, nearest_triangle(i, valid, place))
-    EACH_RAY leave_instance(k);
 }
 
 void main()
@@ -89,19 +80,7 @@ void main()
         if (has_world_tree)
             slab_ready(k, frame.reach);
     }
-    VISIT_KIND(has_planes, false, frame.planes, nearest_plane(i, valid))
-    VISIT_KIND(has_spheres, has_sphere_tree, frame.spheres, nearest_sphere(i, valid))
-    VISIT_KIND(has_flats, has_flat_tree, frame.flats, nearest_flat(i, valid))
-    VISIT_KIND(has_ellipsoids, has_ellipsoid_tree, frame.ellipsoids, nearest_solid(i, valid))
-    VISIT_KIND(has_boxes, has_box_tree, frame.boxes, nearest_solid(i, valid))
-    VISIT_KIND(has_cones, has_cone_tree, frame.cones, nearest_solid(i, valid))
-    if (has_instances) {
-        EACH_RAY keep_world(k);
-        VISIT_KIND(true, has_instance_tree, frame.instances, nearest_instance(i, valid))
-    } else if (has_meshes) {
-        EACH_RAY mesh_ray[k] = shear_ray(ray_d[k]);
-        VISIT_TREE(hidden(frame.triangles.nodes), nearest_triangle(i, valid, no_instance))
-    }
+    visit_scene();
     uint count = 0u;
     EACH_RAY count += uint(packet_index(k) < work.count);
     if (joint) {

@@ -7,6 +7,7 @@
 
 #include "batch.glsl"
 #include "intersect.glsl"
+#include "mesh.glsl"
 #include "scene_data.glsl"
 
 const bool joint = RAYS > 1;
@@ -63,40 +64,30 @@ gpu_sphere joint_sphere(uint i)
 {
     uint at = frame.spheres.base + 2u * i;
     uvec4 held = hold_rows(at, 2u);
-    uvec4 a = held_row(held, at, 0u), b = held_row(held, at, 1u);
-    return gpu_sphere(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.x), b.y, b.z,
-                      b.w);
+    return sphere_of(held_row(held, at, 0u), held_row(held, at, 1u));
 }
 
 gpu_flat joint_flat(uint i)
 {
     uint at = frame.flats.base + 4u * i;
     uvec4 held = hold_rows(at, 4u);
-    uvec4 a = held_row(held, at, 0u), b = held_row(held, at, 1u);
-    uvec4 c = held_row(held, at, 2u), d = held_row(held, at, 3u);
-    return gpu_flat(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.xyz),
-                    uintBitsToFloat(b.w), uintBitsToFloat(c.xyz), uintBitsToFloat(c.w), d.x, d.y,
-                    d.z, d.w);
+    return flat_of(held_row(held, at, 0u), held_row(held, at, 1u), held_row(held, at, 2u),
+                   held_row(held, at, 3u));
 }
 
 gpu_solid joint_solid(uint i)
 {
     uint at = frame.solids.base + 5u * i;
     uvec4 held = hold_rows(at, 5u);
-    uvec4 a = held_row(held, at, 0u), b = held_row(held, at, 1u), c = held_row(held, at, 2u);
-    uvec4 d = held_row(held, at, 3u), e = held_row(held, at, 4u);
-    return gpu_solid(uintBitsToFloat(a), uintBitsToFloat(b), uintBitsToFloat(c),
-                     uintBitsToFloat(d.x), uintBitsToFloat(d.y), d.z, d.w, uintBitsToFloat(e.x),
-                     uintBitsToFloat(e.y), e.z, e.w);
+    return solid_of(held_row(held, at, 0u), held_row(held, at, 1u), held_row(held, at, 2u),
+                    held_row(held, at, 3u), held_row(held, at, 4u));
 }
 
 gpu_triangle joint_triangle(uint i)
 {
     uint at = frame.triangles.base + 3u * i;
     uvec4 held = hold_rows(at, 3u);
-    uvec4 a = held_row(held, at, 0u), b = held_row(held, at, 1u), c = held_row(held, at, 2u);
-    return gpu_triangle(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w,
-                        uintBitsToFloat(c.xyz), c.w);
+    return triangle_of(held_row(held, at, 0u), held_row(held, at, 1u), held_row(held, at, 2u));
 }
 
 gpu_node joint_node(uint at)

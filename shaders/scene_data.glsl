@@ -22,13 +22,18 @@ vec4 scene_row_float(uint row)
     return uintBitsToFloat(scene_row(row));
 }
 
-// The primitive number i; gpu_list tells how the numbers are given.
+// The primitive number i; gpu_list tells how the numbers are given. Packets load the same rows in their
+// own way (packet.glsl).
+gpu_sphere sphere_of(uvec4 a, uvec4 b)
+{
+    return gpu_sphere(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.x), b.y, b.z,
+                      b.w);
+}
+
 gpu_sphere load_sphere(uint i)
 {
     uint at = frame.spheres.base + 2u * i;
-    vec4 a = scene_row_float(at);
-    uvec4 b = scene_row(at + 1u);
-    return gpu_sphere(a.xyz, a.w, uintBitsToFloat(b.x), b.y, b.z, b.w);
+    return sphere_of(scene_row(at), scene_row(at + 1u));
 }
 
 gpu_plane load_plane(uint i)
@@ -39,23 +44,33 @@ gpu_plane load_plane(uint i)
     return gpu_plane(a.xyz, a.w, b.x, b.y, b.z, b.w);
 }
 
+gpu_flat flat_of(uvec4 a, uvec4 b, uvec4 c, uvec4 d)
+{
+    return gpu_flat(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.xyz),
+                    uintBitsToFloat(b.w), uintBitsToFloat(c.xyz), uintBitsToFloat(c.w), d.x, d.y,
+                    d.z, d.w);
+}
+
 gpu_flat load_flat(uint i)
 {
     uint at = frame.flats.base + 4u * i;
-    vec4 a = scene_row_float(at), b = scene_row_float(at + 1u), c = scene_row_float(at + 2u);
-    uvec4 d = scene_row(at + 3u);
-    return gpu_flat(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, d.x, d.y, d.z, d.w);
+    return flat_of(scene_row(at), scene_row(at + 1u), scene_row(at + 2u), scene_row(at + 3u));
+}
+
+gpu_solid solid_of(uvec4 a, uvec4 b, uvec4 c, uvec4 d, uvec4 e)
+{
+    return gpu_solid(uintBitsToFloat(a), uintBitsToFloat(b), uintBitsToFloat(c),
+                     uintBitsToFloat(d.x), uintBitsToFloat(d.y), d.z, d.w, uintBitsToFloat(e.x),
+                     uintBitsToFloat(e.y), e.z, e.w);
 }
 
 gpu_solid load_solid(uint i)
 {
     uint at = frame.solids.base + 5u * i;
-    vec4 a = scene_row_float(at), b = scene_row_float(at + 1u), c = scene_row_float(at + 2u);
-    uvec4 d = scene_row(at + 3u), e = uvec4(0u);
+    uvec4 e = uvec4(0u);
     if (has_cones)
         e = scene_row(at + 4u);
-    return gpu_solid(a, b, c, uintBitsToFloat(d.x), uintBitsToFloat(d.y), d.z, d.w,
-                     uintBitsToFloat(e.x), uintBitsToFloat(e.y), e.z, e.w);
+    return solid_of(scene_row(at), scene_row(at + 1u), scene_row(at + 2u), scene_row(at + 3u), e);
 }
 
 // World to object space, in rows.

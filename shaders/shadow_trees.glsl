@@ -3,10 +3,10 @@
 #include "bindings.glsl"
 #include "film.glsl"
 #include "hole.glsl"
-#include "instance.glsl"
 #include "light.glsl"
 #include "obstacle.glsl"
 #include "shadow_queue.glsl"
+#include "visit.glsl"
 
 layout(local_size_x = LR_GROUP_SIZE) in;
 
@@ -48,7 +48,7 @@ void dim(uint k, obstacle by, vec2 crossing)
     ray_limit[k] = blocked ? -1.0 : t_max;
 }
 
-void shadow_sphere(uint i, bool valid)
+void test_sphere(uint i, bool valid)
 {
     gpu_sphere s = joint_sphere(i);
     obstacle by = joint_obstacle(valid, s.object, s.flags);
@@ -61,7 +61,7 @@ void shadow_sphere(uint i, bool valid)
     }
 }
 
-void shadow_flat(uint i, bool valid)
+void test_flat(uint i, bool valid)
 {
     gpu_flat f = joint_flat(i);
     obstacle by = joint_obstacle(valid, f.object, f.flags);
@@ -74,7 +74,7 @@ void shadow_flat(uint i, bool valid)
     }
 }
 
-void shadow_solid(uint i, bool valid)
+void test_solid(uint i, bool valid)
 {
     gpu_solid s = joint_solid(i);
     obstacle by = joint_obstacle(valid, s.object, s.flags);
@@ -88,7 +88,7 @@ void shadow_solid(uint i, bool valid)
     }
 }
 
-void shadow_plane(uint i, bool valid)
+void test_plane(uint i, bool valid)
 {
     gpu_plane p = load_plane(i);
     obstacle by = joint_obstacle(valid, p.object, p.flags);
@@ -101,7 +101,7 @@ void shadow_plane(uint i, bool valid)
     }
 }
 
-void shadow_triangle(uint i, bool valid, gpu_instance place)
+void test_triangle(uint i, bool valid, gpu_instance place)
 {
     gpu_triangle f = joint_triangle(i);
     obstacle by = joint_obstacle(valid, f.object + place.object, f.flags | place.flags);
@@ -116,15 +116,6 @@ void shadow_triangle(uint i, bool valid, gpu_instance place)
             hole = cut_out(material, mesh_uv(i, f.flags, met.weight));
         dim(k, by, vec2(mix(met.t, -1.0, hole), -1.0));
     }
-}
-
-void shadow_instance(uint i, bool valid)
-{
-    gpu_instance place = joint_instance(i);
-    EACH_RAY enter_instance(k, place);
-    if (valid)
-        VISIT_TREE(place.nodes, shadow_triangle(i, valid, place))
-    EACH_RAY leave_instance(k);
 }
 
 // ray_depth[i], by selects: an index that is known only at run time would keep the whole array in
@@ -160,19 +151,7 @@ void main()
         if (has_world_tree)
             slab_ready(k, frame.reach);
     }
-    VISIT_KIND(has_planes, false, frame.planes, shadow_plane(i, valid))
-    VISIT_KIND(has_spheres, has_sphere_tree, frame.spheres, shadow_sphere(i, valid))
-    VISIT_KIND(has_flats, has_flat_tree, frame.flats, shadow_flat(i, valid))
-    VISIT_KIND(has_ellipsoids, has_ellipsoid_tree, frame.ellipsoids, shadow_solid(i, valid))
-    VISIT_KIND(has_boxes, has_box_tree, frame.boxes, shadow_solid(i, valid))
-    VISIT_KIND(has_cones, has_cone_tree, frame.cones, shadow_solid(i, valid))
-    if (has_instances) {
-        EACH_RAY keep_world(k);
-        VISIT_KIND(true, has_instance_tree, frame.instances, shadow_instance(i, valid))
-    } else if (has_meshes) {
-        EACH_RAY mesh_ray[k] = shear_ray(ray_d[k]);
-        VISIT_TREE(hidden(frame.triangles.nodes), shadow_triangle(i, valid, no_instance))
-    }
+    visit_scene();
     uint count = 0u, blocked = 0u;
     for (uint k = 0u;;) {
         bool wanted = packet_index(k) < work.count;

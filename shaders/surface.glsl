@@ -47,7 +47,7 @@ surface mesh_surface(gpu_hit hit, vec3 o, vec3 d)
         uvec4 corners = scene_row(frame.corners + hit.primitive - frame.triangles.begin);
         gpu_vertex a = load_vertex(corners.x), b = load_vertex(corners.y), c = load_vertex(corners.z);
         vec3 w = met.weight;
-        s.uv = vec2(a.u, a.v) * w.x + vec2(b.u, b.v) * w.y + vec2(c.u, c.v) * w.z;
+        s.uv = uv_between(a, b, c, w);
         if ((f.flags & LR_FLAG_COLORS) != 0u)
             s.tint = unpack_color(a.color) * w.x + unpack_color(b.color) * w.y +
                      unpack_color(c.color) * w.z;

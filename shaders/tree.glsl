@@ -77,7 +77,7 @@ const uint stack_registers = uint(LR_TREE_DEPTH / LR_BATCH);
 // are kept though there are none when a round begins.
 // Behind the outer loop a compiler knows that `next` is the root, but not whether a driver
 // ended the loop by force.
-#define VISIT_TREE(root, test)                                                              \
+#define VISIT_TREE(root, test)                                                                     \
     {                                                                                              \
         uint stack[STACK_SIZE];                                                                    \
         uint depth = 0u, next = root;                                                              \
@@ -88,13 +88,13 @@ const uint stack_registers = uint(LR_TREE_DEPTH / LR_BATCH);
                 int near0 = LR_BOX_MISSED, near1 = LR_BOX_MISSED;                                  \
                 EACH_RAY                                                                           \
                 {                                                                                  \
-                    near0 = min(near0, slab_entry(k, node.min0, node.max0));                        \
-                    near1 = min(near1, slab_entry(k, node.min1, node.max1));                        \
+                    near0 = min(near0, slab_entry(k, node.min0, node.max0));                       \
+                    near1 = min(near1, slab_entry(k, node.min1, node.max1));                       \
                 }                                                                                  \
                 near0 = joint_min(near0);                                                          \
                 near1 = joint_min(near1);                                                          \
                 bool met0 = near0 != LR_BOX_MISSED, met1 = near1 != LR_BOX_MISSED;                 \
-                bool is_leaf0 = node.child0 >= LR_NODE_LEAF, is_leaf1 = node.child1 >= LR_NODE_LEAF;\
+                bool is_leaf0 = node.child0 >= LR_NODE_LEAF, is_leaf1 = node.child1 >= LR_NODE_LEAF; \
                 leaf0 = met0 && is_leaf0 ? node.child0 : leaf0;                                    \
                 leaf1 = met1 && is_leaf1 ? node.child1 : leaf1;                                    \
                 bool inner0 = met0 && !is_leaf0, inner1 = met1 && !is_leaf1;                       \
@@ -140,9 +140,9 @@ const uint stack_registers = uint(LR_TREE_DEPTH / LR_BATCH);
     }
 
 // A kind of primitives, by its tree or one after the other.
-#define VISIT_KIND(has, has_tree, list, test)                                               \
+#define VISIT_KIND(has, has_tree, list, test)                                                      \
     if (has_tree) {                                                                                \
-        VISIT_TREE(hidden(list.nodes), test)                                                \
+        VISIT_TREE(hidden(list.nodes), test)                                                       \
     } else if (has) {                                                                              \
         VISIT_LIST(list, test)                                                                     \
     }
