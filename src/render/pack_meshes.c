@@ -45,9 +45,9 @@ typedef struct placement {
     bool mirrored;                /* front and back change sides */
 } placement;
 
-static placement place_mesh(const mesh_packing *m, const facet *f, bool shared)
+static placement place_mesh(const mesh_packing *m, uint32_t index, bool shared)
 {
-    const lr_object *object = &m->scene->objects[f->object];
+    const lr_object *object = &m->scene->objects[index];
     placement p = {.to_world = shared || !object->transformed ? NULL : &object->to_world};
     p.mirrored = p.to_world && is_mirrored(p.to_world);
     return p;
@@ -109,7 +109,7 @@ static uint32_t add_facets(const mesh_packing *m, uint32_t mesh, uint32_t object
                            facet *facets, lr_bvh_box *boxes, uint32_t count)
 {
     const lr_mesh *from = &m->scene->meshes[mesh];
-    placement p = place_mesh(m, &(facet){.object = object}, shared);
+    placement p = place_mesh(m, object, shared);
     for (uint32_t i = 0; i < from->triangle_count; i++) {
         uint32_t vertices[3];
         vec3 corners[3];
@@ -145,7 +145,7 @@ static void pack_facet(const facet_work *work, uint32_t place)
     const mesh_packing *m = work->m;
     const facet *f = &work->facets[work->bvh->order[place]];
     const lr_mesh *mesh = &m->scene->meshes[f->mesh];
-    placement p = place_mesh(m, f, work->shared);
+    placement p = place_mesh(m, f->object, work->shared);
     uint32_t v[3], row = m->vertex_rows[f->mesh];
     vec3 corners[3];
     facet_vertices(mesh, f->triangle, p.mirrored, v);
@@ -197,9 +197,8 @@ typedef struct heap {
 static bool is_opaque(const mesh_packing *m, uint32_t object)
 {
     const lr_scene *scene = m->scene;
-    const lr_pattern *p = &scene->materials[scene->objects[object].material].color;
-    bool cut = p->kind == LR_PATTERN_IMAGE &&
-               scene->materials[scene->objects[object].material].alpha_cutoff > 0;
+    const lr_material *material = &scene->materials[scene->objects[object].material];
+    bool cut = material->color.kind == LR_PATTERN_IMAGE && material->alpha_cutoff > 0;
     return !cut && !(m->object_flags[object] & LR_FLAG_TRANSPARENT);
 }
 
@@ -213,7 +212,7 @@ static bool hides(const void *context, uint32_t first, uint32_t later)
     vec3 corners[2][3];
     for (int i = 0; i < 2; i++) {
         uint32_t vertices[3];
-        placement p = place_mesh(h->m, f[i], h->shared);
+        placement p = place_mesh(h->m, f[i]->object, h->shared);
         facet_vertices(&h->m->scene->meshes[f[i]->mesh], f[i]->triangle, p.mirrored, vertices);
         facet_corners(&h->m->scene->meshes[f[i]->mesh], vertices, &p, corners[i]);
     }

@@ -20,15 +20,25 @@ typedef struct lr_wavefront {
     lr_device *device;
     const lr_packed_scene *scene;
     lr_layout layout;
-    VkPipeline camera, trace, shade;
-    VkPipeline nearest, shadow, sort_scan, sort_place; /* in scenes with trees */
+    union {
+        struct {
+            VkPipeline camera, trace, shade;
+            VkPipeline nearest, shadow, sort_scan, sort_place; /* in scenes with trees */
+        };
+        VkPipeline programs[7]; /* all of them */
+    };
     VkDescriptorSet camera_set, set;
-    lr_buffer frame, rows, film, film_host, counters, counters_host, hits, none;
-    lr_buffer found, shadow_rays, cells, order; /* in scenes with trees */
-    uint32_t shadow_counts[LR_SHADOW_LIGHTS];   /* waiting in the segments */
-    bool shadows_sorted;                        /* those are to be sorted */
-    uint32_t shadow_room;                       /* of a segment */
-    uint32_t rays_at_once;                      /* that an invocation takes through the trees */
+    union {
+        struct {
+            lr_buffer frame, rows, film, film_host, counters, counters_host, hits, none;
+            lr_buffer found, shadow_rays, cells, order; /* in scenes with trees */
+        };
+        lr_buffer buffers[12]; /* all of them */
+    };
+    uint32_t shadow_counts[LR_SHADOW_LIGHTS]; /* waiting in the segments */
+    bool shadows_sorted;                      /* those are to be sorted */
+    uint32_t shadow_room;                     /* of a segment */
+    uint32_t rays_at_once;                    /* that an invocation takes through the trees */
     lr_queue queues[LR_GENERATIONS_MAX];
     /* Where queues live. A buffer that a queue gives back is the first to be taken again: it is
      * still in the caches. */

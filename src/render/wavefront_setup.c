@@ -26,6 +26,8 @@
 #define CHUNK_SOFTWARE 131072
 #define CHUNK_MIN 256
 
+#define COUNT_OF(array) (sizeof(array) / sizeof *(array))
+
 #define CELLS_SIZE (4ull * LR_CELLS * LR_SHADOW_LIGHTS)
 
 /* RAYS of the kernels named packet. */
@@ -89,34 +91,30 @@ static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *er
     constants[LR_SPEC_TEXEL_QUEUES] =
         texel_loads && queue_size(w) / 16 <= limit && shadow_size(w) / 16 <= limit;
     constants[LR_SPEC_SHUFFLE] = w->device->shuffle_size >= LR_BATCH;
+    /* Only the shadow rays of children are sorted. */
+    bool trees = has_trees(w), packets = w->rays_at_once > 1;
+    bool sorts = trees && w->scene->constants[LR_SPEC_SCATTER];
     const struct {
         const uint32_t *words;
         size_t size;
         VkPipeline *program;
-    } wanted[] = {
-        {camera_spv, sizeof camera_spv, &w->camera},
-        {trace_spv, sizeof trace_spv, &w->trace},
-        {shade_spv, sizeof shade_spv, &w->shade},
-        {sort_scan_spv, sizeof sort_scan_spv, &w->sort_scan},
-        {sort_place_spv, sizeof sort_place_spv, &w->sort_place},
-        {nearest_packet_spv, sizeof nearest_packet_spv, &w->nearest},
-        {shadow_packet_spv, sizeof shadow_packet_spv, &w->shadow},
-        {nearest_ray_spv, sizeof nearest_ray_spv, &w->nearest},
-        {shadow_ray_spv, sizeof shadow_ray_spv, &w->shadow},
+        bool needed;
+    } kernels[] = {
+        {camera_spv, sizeof camera_spv, &w->camera, true},
+        {trace_spv, sizeof trace_spv, &w->trace, true},
+        {shade_spv, sizeof shade_spv, &w->shade, true},
+        {sort_scan_spv, sizeof sort_scan_spv, &w->sort_scan, sorts},
+        {sort_place_spv, sizeof sort_place_spv, &w->sort_place, sorts},
+        {nearest_packet_spv, sizeof nearest_packet_spv, &w->nearest, trees && packets},
+        {shadow_packet_spv, sizeof shadow_packet_spv, &w->shadow, trees && packets},
+        {nearest_ray_spv, sizeof nearest_ray_spv, &w->nearest, trees && !packets},
+        {shadow_ray_spv, sizeof shadow_ray_spv, &w->shadow, trees && !packets},
     };
-    /* The last two pairs exclude each other. */
-    const size_t always = 3, first_packet = 5, first_ray = 7;
-    size_t skipped = w->rays_at_once > 1 ? first_ray : first_packet;
-    size_t count = has_trees(w) ? sizeof wanted / sizeof *wanted : always;
     lr_status status = LR_OK;
-    for (size_t i = 0; i < count && !status; i++) {
-        if (i == skipped || i == skipped + 1)
-            continue;
-        /* Only the shadow rays of children are sorted. */
-        if (i >= always && i < first_packet && !w->scene->constants[LR_SPEC_SCATTER])
-            continue;
-        lr_program_desc desc = {wanted[i].words, wanted[i].size / 4, constants, LR_SPEC_COUNT};
-        status = lr_program_create(w->device, &w->layout, &desc, wanted[i].program, error);
+    for (size_t i = 0; i < COUNT_OF(kernels) && !status; i++) {
+        lr_program_desc desc = {kernels[i].words, kernels[i].size / 4, constants, LR_SPEC_COUNT};
+        if (kernels[i].needed)
+            status = lr_program_create(w->device, &w->layout, &desc, kernels[i].program, error);
     }
     return status;
 }
@@ -145,7 +143,7 @@ static lr_status create_buffers(lr_wavefront *w, lr_error *error)
         {&w->none, LR_BUFFER_TEXEL, 256, "nothing"},
     };
     lr_status status = LR_OK;
-    for (size_t i = 0; i < sizeof wanted / sizeof *wanted && !status; i++)
+    for (size_t i = 0; i < COUNT_OF(wanted) && !status; i++)
         status = lr_buffer_create(w->device, wanted[i].kind, wanted[i].size, wanted[i].what,
                                   wanted[i].buffer, error);
     if (!status)
@@ -171,6 +169,13 @@ static lr_status create_layout(lr_wavefront *w, lr_error *error)
     lr_layout_desc desc = {types, LR_BIND_COUNT, sizeof(struct gpu_work), 2};
     return lr_layout_create(w->device, &desc, &w->layout, error);
 }
+
+static_assert(offsetof(lr_wavefront, sort_place) + sizeof(VkPipeline) ==
+                  offsetof(lr_wavefront, programs) + sizeof(VkPipeline[7]),
+              "programs[] holds all programs");
+static_assert(offsetof(lr_wavefront, order) + sizeof(lr_buffer) ==
+                  offsetof(lr_wavefront, buffers) + sizeof(lr_buffer[12]),
+              "buffers[] holds all buffers");
 
 /* Gives an empty queue a buffer for the children of one chunk. */
 static lr_status open_queue(lr_wavefront *w, lr_queue *queue, lr_error *error)
@@ -272,13 +277,11 @@ static lr_status warm_up(lr_wavefront *w, lr_error *error)
         return status;
     struct gpu_work nothing = {0};
     wavefront_reset_counters(w);
-    const VkPipeline programs[] = {w->camera, w->trace,     w->shade,     w->nearest,
-                                   w->shadow, w->sort_scan, w->sort_place};
-    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) {
-        if (!programs[i])
+    for (size_t i = 0; i < COUNT_OF(w->programs); i++) {
+        if (!w->programs[i])
             continue;
         lr_commands_barrier(w->device);
-        lr_commands_dispatch(w->device, &w->layout, programs[i], w->set, &nothing, 1, 1, 1);
+        lr_commands_dispatch(w->device, &w->layout, w->programs[i], w->set, &nothing, 1, 1, 1);
     }
     return lr_commands_finish(w->device, error);
 }
@@ -319,17 +322,12 @@ void lr_wavefront_destroy(lr_wavefront *wavefront)
     lr_wavefront *w = wavefront;
     if (!w->device)
         return;
-    VkPipeline programs[] = {w->camera, w->trace,     w->shade,     w->nearest,
-                             w->shadow, w->sort_scan, w->sort_place};
-    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
-        if (programs[i])
-            w->device->vk.vkDestroyPipeline(w->device->handle, programs[i], NULL);
+    for (size_t i = 0; i < COUNT_OF(w->programs); i++)
+        if (w->programs[i])
+            w->device->vk.vkDestroyPipeline(w->device->handle, w->programs[i], NULL);
     lr_layout_destroy(w->device, &w->layout);
-    lr_buffer *buffers[] = {&w->frame,    &w->rows,          &w->film,  &w->film_host,
-                            &w->counters, &w->counters_host, &w->hits,  &w->none,
-                            &w->found,    &w->shadow_rays,   &w->cells, &w->order};
-    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
-        lr_buffer_destroy(w->device, buffers[i]);
+    for (size_t i = 0; i < COUNT_OF(w->buffers); i++)
+        lr_buffer_destroy(w->device, &w->buffers[i]);
     for (uint32_t i = 0; i < w->pool_count; i++)
         lr_buffer_destroy(w->device, &w->pool[i]);
     *w = (lr_wavefront){0};
