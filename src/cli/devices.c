@@ -134,7 +134,7 @@ static int run(const command *self, int argc, char **argv)
     int operands;
     parse_result parsed = options_parse(self, argc, argv, &v, &operands);
     if (parsed != PARSE_OK) {
-        return parsed == PARSE_HELP ? EXIT_FINE : EXIT_USAGE;
+        return (int)parsed;
     }
     if (v.json && v.self_test) {
         print_error("--json and --self-test do not go together; see lavaray devices --help");

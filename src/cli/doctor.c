@@ -213,7 +213,7 @@ static int run(const command *self, int argc, char **argv)
     int operands;
     parse_result parsed = options_parse(self, argc, argv, NULL, &operands);
     if (parsed != PARSE_OK) {
-        return parsed == PARSE_HELP ? EXIT_FINE : EXIT_USAGE;
+        return (int)parsed;
     }
     say("ok", "lavaray %s", LR_VERSION);
     findings f = {0};

@@ -150,7 +150,7 @@ static int run(const command *self, int argc, char **argv)
     int operands;
     parse_result parsed = options_parse(self, argc, argv, &v, &operands);
     if (parsed != PARSE_OK) {
-        return parsed == PARSE_HELP ? EXIT_FINE : EXIT_USAGE;
+        return (int)parsed;
     }
     lr_scene *scene = NULL;
     int code = load_scene(argv[0], &v.load, true, &scene, NULL); /* notes stand in the list */

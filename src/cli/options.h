@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cli/exit_codes.h"
+
 struct command;
 
 typedef enum option_kind {
@@ -49,7 +51,12 @@ typedef struct option {
     bool for_tests;      /* listed last in help */
 } option;
 
-typedef enum parse_result { PARSE_OK, PARSE_HELP, PARSE_ERROR } parse_result;
+/* But for PARSE_OK they are exit codes. */
+typedef enum parse_result {
+    PARSE_OK = -1,
+    PARSE_HELP = EXIT_FINE,
+    PARSE_ERROR = EXIT_USAGE,
+} parse_result;
 
 /* Parses the arguments behind the command's name into values. The operands are moved to the front
  * of argv and counted in *operand_count. PARSE_HELP: --help was given and printed. PARSE_ERROR: one

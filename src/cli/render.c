@@ -339,7 +339,7 @@ static int run(const command *self, int argc, char **argv)
     int operands;
     parse_result parsed = options_parse(self, argc, argv, &v, &operands);
     if (parsed != PARSE_OK) {
-        return parsed == PARSE_HELP ? EXIT_FINE : EXIT_USAGE;
+        return (int)parsed;
     }
     const char *path = argv[0];
     lr_encoding encoding = {0};

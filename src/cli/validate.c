@@ -29,7 +29,7 @@ static int run(const command *self, int argc, char **argv)
     int operands;
     parse_result parsed = options_parse(self, argc, argv, &v, &operands);
     if (parsed != PARSE_OK) {
-        return parsed == PARSE_HELP ? EXIT_FINE : EXIT_USAGE;
+        return (int)parsed;
     }
     int code = EXIT_FINE;
     for (int i = 0; i < operands; i++) {
