@@ -19,17 +19,17 @@ void main()
     COUNT(counters.made, uint(wanted))
     if (!wanted)
         return;
-    uvec2 pixel = uvec2(work.tile_x, work.tile_y) + at;
+    uvec2 pixel = uvec2(work.tile_x, work.tile_y) + at * work.step;
     vec2 position = vec2(pixel) + sample_position(pixel, work.first_sample + gl_WorkGroupID.z);
-    uint in_tile = at.y * work.tile_width + at.x;
+    uint in_film = work.film_first + at.y * work.step * work.film_pitch + at.x * work.step;
     // Squares of 8 x 8 pixels one after the other, those at the tile's edges smaller, so that rays that
     // are neighbours in the queue are so in the picture.
     uvec2 corner = at & ~7u, size = min(uvec2(work.tile_width, work.tile_height) - corner, uvec2(8u));
     uvec2 inside = at - corner;
     uint slot = gl_WorkGroupID.z * (work.tile_width * work.tile_height) + corner.y * work.tile_width +
                 corner.x * size.y + inside.y * size.x + inside.x;
-    atomicAdd(film[in_tile * uint(LR_FILM_WORDS) + uint(LR_FILM_SAMPLES)], 1u);
-    store_ray(slot, gpu_ray(frame.origin, in_tile, camera_direction(position),
+    atomicAdd(film[in_film * uint(LR_FILM_WORDS) + uint(LR_FILM_SAMPLES)], 1u);
+    store_ray(slot, gpu_ray(frame.origin, in_film, camera_direction(position),
                             LR_KIND_PRIMARY << LR_STATE_KIND_SHIFT, vec3(1.0), 0u, frame.inside0,
                             frame.inside1, frame.inside2, frame.inside3));
 }

@@ -34,12 +34,12 @@ typedef struct vec4 {
 #define LR_BIND_HITS 7        /* gpu_hit[] */
 #define LR_BIND_RAYS_TEXEL 8  /* the same buffers as uniform texel buffers, RGBA32UI */
 #define LR_BIND_HITS_TEXEL 9
-#define LR_BIND_FOUND 10         /* gpu_hit[]: what each ray of a pass met, in scenes with trees */
+#define LR_BIND_FOUND 10 /* gpu_hit[]: what each ray of a pass met, in scenes with trees */
 #define LR_BIND_FOUND_TEXEL 11
-#define LR_BIND_SHADOWS 12       /* gpu_shadow_ray[], LR_SHADOW_LIGHTS segments of them */
+#define LR_BIND_SHADOWS 12 /* gpu_shadow_ray[], LR_SHADOW_LIGHTS segments of them */
 #define LR_BIND_SHADOWS_TEXEL 13
-#define LR_BIND_CELLS 14         /* how many shadow rays end in each cell, segment by segment */
-#define LR_BIND_ORDER 15         /* the shadow rays of each segment in the order of their cells */
+#define LR_BIND_CELLS 14 /* how many shadow rays end in each cell, segment by segment */
+#define LR_BIND_ORDER 15 /* the shadow rays of each segment in the order of their cells */
 #define LR_BIND_COUNT 16
 
 /* ---- Specialisation constants: what a scene does not use is not compiled ---- */
@@ -62,16 +62,16 @@ typedef struct vec4 {
 #define LR_SPEC_SHUFFLE 16            /* share loads within a subgroup */
 #define LR_SPEC_TEXEL_QUEUES 17       /* as LR_SPEC_TEXEL_LOADS, for the queues */
 #define LR_SPEC_TRANSPARENT_PLANES 18 /* ... that is a plane; or one has holes */
-#define LR_SPEC_TREES 19              /* nearest and shadow hits are found by kernels of their own */
-#define LR_SPEC_SPHERE_TREE 20        /* a kind that has many members is found by its tree */
-#define LR_SPEC_FLAT_TREE 21          /* in the order of the kinds above */
+#define LR_SPEC_TREES 19       /* nearest and shadow hits are found by kernels of their own */
+#define LR_SPEC_SPHERE_TREE 20 /* a kind that has many members is found by its tree */
+#define LR_SPEC_FLAT_TREE 21   /* in the order of the kinds above */
 #define LR_SPEC_ELLIPSOID_TREE 22
 #define LR_SPEC_BOX_TREE 23
 #define LR_SPEC_CONE_TREE 24
-#define LR_SPEC_INSTANCES 25          /* meshes stand in instances: some are shown several times */
+#define LR_SPEC_INSTANCES 25 /* meshes stand in instances: some are shown several times */
 #define LR_SPEC_INSTANCE_TREE 26
-#define LR_SPEC_ONE_SIDED 27          /* some surface is there from its front only */
-#define LR_SPEC_CORNERS 28            /* some mesh has normals, texture coordinates or colours */
+#define LR_SPEC_ONE_SIDED 27 /* some surface is there from its front only */
+#define LR_SPEC_CORNERS 28   /* some mesh has normals, texture coordinates or colours */
 #define LR_SPEC_TEXTURES 29
 #define LR_SPEC_CUTOUTS 30 /* some surface has holes where its picture is transparent */
 #define LR_SPEC_MESHES 31
@@ -179,8 +179,8 @@ struct gpu_instance {
 LR_ROWS(gpu_instance, 4)
 
 /* An inner node of a tree: the boxes around its two children, and who they are. A leaf is
- * LR_NODE_LEAF + (its primitives - 1 << LR_NODE_COUNT_SHIFT) + the number of the first; anything else
- * is the row of an inner node. */
+ * LR_NODE_LEAF + (its primitives - 1 << LR_NODE_COUNT_SHIFT) + the number of the first; anything
+ * else is the row of an inner node. */
 struct gpu_node {
     vec3 min0;
     uint child0;
@@ -197,7 +197,8 @@ LR_ROWS(gpu_node, 4)
 #define LR_NODE_FIRST 0x0FFFFFFFu
 #define LR_NODE_ROWS 4
 #define LR_TREE_DEPTH 64
-#define LR_BOX_SLACK 3.814697265625e-6 /* 2^-18: boxes against rounding, relative to coordinates */
+#define LR_BOX_SLACK 3.814697265625e-6 /* 2^-18: boxes against rounding, relative to coordinates   \
+                                        */
 #define LR_BOX_MISSED 0x7F800000       /* infinity: the distance to a box that is not met */
 
 struct gpu_plane {
@@ -250,8 +251,8 @@ struct gpu_object {
     vec4 row2;
     uint material;
     uint flags;
-    uint rank; /* as a medium, 1..65535: the highest of the nested media fills the space */
-    uint instance; /* of a mesh: which */
+    uint rank;       /* as a medium, 1..65535: the highest of the nested media fills the space */
+    uint instance;   /* of a mesh: which */
     uint shadow_red; /* -log2(transmit) in LR_SHADOW_UNIT */
     uint shadow_green;
     uint shadow_blue;
@@ -396,12 +397,12 @@ struct gpu_frame {
     float unused1;
 };
 LR_ROWS(gpu_frame, 22)
-#define LR_CELL_BITS 5  /* cells along a side, as a power of two */
+#define LR_CELL_BITS 5 /* cells along a side, as a power of two */
 #define LR_CELLS 32768u
 
 /* ---- What differs from one dispatch to the next (push constants) ---- */
 struct gpu_work {
-    uint tile_x; /* first pixel of the tile in the picture */
+    uint tile_x; /* first pixel of the tile in the picture; its size in pixels traced */
     uint tile_y;
     uint tile_width;
     uint tile_height;
@@ -413,7 +414,10 @@ struct gpu_work {
     uint first_lights; /* 1 in the first shading pass of the hits: the rest is done once, there */
     uint shadow_room;  /* shadow rays that a segment holds */
     uint shadow_first[4]; /* and how many are in each already */
-    uint sorted; /* 1: the shadow rays are, or will be, sorted */
+    uint sorted;          /* 1: the shadow rays are, or will be, sorted */
+    uint step;            /* camera rays: every so many-th pixel of a row, and row */
+    uint film_first;      /* where the tile's first pixel is in the film, */
+    uint film_pitch;      /* and how many pixels lie between it and the one below */
 };
 #define LR_SHADOW_LIGHTS 4 /* light l goes to segment l modulo this */
 
@@ -428,7 +432,7 @@ struct gpu_work {
 
 struct gpu_ray {
     vec3 origin;
-    uint pixel;     /* in the tile */
+    uint pixel;     /* of the film */
     vec3 direction; /* unit */
     uint state;
     vec3 weight;
@@ -479,14 +483,38 @@ struct gpu_counters {
     uint dropped_nesting;
     uint non_finite;
     uint saturated;
-    uint made; /* camera rays */
+    uint made;           /* camera rays */
     uint shadow_rays[4]; /* added to the segments */
-    uint found;      /* entries that the kernels of trees finished */
-    uint unfinished; /* ... that a driver stopped half-way */
+    uint found;          /* entries that the kernels of trees finished */
+    uint unfinished;     /* ... that a driver stopped half-way */
     uint unused0;
     uint unused1;
 };
 LR_ROWS(gpu_counters, 7)
+
+/* ---- The window: display.comp ---- */
+#define LR_SHADES 256    /* of a channel */
+#define LR_COARSE_MAX 32 /* pixels between those that are traced first, at most */
+
+/* How film sums become shades; two of them, for pixels of display.samples and of other numbers of
+ * samples. A sum has as many shades as steps that it reaches. */
+struct gpu_shades {
+    uint steps_low[LR_SHADES]; /* in film steps; the last one is unused */
+    uint steps_high[LR_SHADES];
+    uint overflow; /* the shade of sums beyond the film's range */
+    uint unused0;
+    uint unused1;
+    uint unused2;
+};
+
+struct gpu_display {
+    uint width;
+    uint height;
+    uint samples;
+    uint blue_first; /* 1: of a pixel's four bytes the first is blue, 0: red */
+    uint overlay;    /* 1: there is one: pixels with premultiplied alpha, blue in the lowest byte */
+    uint palette;    /* 1: the shade of red is an index of the palette */
+};
 
 /* ---- The start-up self-test ---- */
 #define LR_SELF_TEST_COUNT 256

@@ -78,10 +78,10 @@ void lr_commands_zero(lr_device *device, const lr_buffer *buffer, VkDeviceSize s
     device->vk.vkCmdFillBuffer(device->commands, buffer->handle, 0, size, 0);
 }
 
-void lr_commands_write(lr_device *device, const lr_buffer *buffer, const void *bytes,
-                       VkDeviceSize size)
+void lr_commands_write(lr_device *device, const lr_buffer *buffer, VkDeviceSize offset,
+                       const void *bytes, VkDeviceSize size)
 {
-    device->vk.vkCmdUpdateBuffer(device->commands, buffer->handle, 0, size, bytes);
+    device->vk.vkCmdUpdateBuffer(device->commands, buffer->handle, offset, size, bytes);
 }
 
 lr_status lr_commands_finish(lr_device *device, lr_error *error)

@@ -26,9 +26,9 @@ void lr_commands_copy_to(lr_device *device, const lr_buffer *from, const lr_buff
                          VkDeviceSize offset, VkDeviceSize size);
 void lr_commands_zero(lr_device *device, const lr_buffer *buffer, VkDeviceSize size);
 
-/* Writes at most 64 KiB, taken when the command is recorded. */
-void lr_commands_write(lr_device *device, const lr_buffer *buffer, const void *bytes,
-                       VkDeviceSize size);
+/* Writes at most 64 KiB at `offset`, taken when the command is recorded. */
+void lr_commands_write(lr_device *device, const lr_buffer *buffer, VkDeviceSize offset,
+                       const void *bytes, VkDeviceSize size);
 
 /* Submits what was recorded and waits until it is done. */
 lr_status lr_commands_finish(lr_device *device, lr_error *error);

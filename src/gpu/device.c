@@ -11,6 +11,7 @@
 
 #define DEVICES_MAX 64
 #define EXTENSIONS_MAX 512
+#define INSTANCE_EXTENSIONS_MAX 16
 
 /* What each stage needs beyond what Vulkan guarantees; render/renderer.c binds as many. */
 #define STORAGE_BUFFERS_NEEDED 7
@@ -60,7 +61,6 @@ static lr_status create_instance(lr_device *device, bool validation, lr_error *e
     if (status)
         return status;
     const char *layer = "VK_LAYER_KHRONOS_validation";
-    const char *extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
     if (validation && !has_layer(&device->vk, layer))
         return lr_fail(error, LR_ERROR_DEVICE,
                        "validation was asked for, but the layer %s is not installed; it comes with "
@@ -82,6 +82,14 @@ static lr_status create_instance(lr_device *device, bool validation, lr_error *e
         .enabledValidationFeatureCount = 1,
         .pEnabledValidationFeatures = &enable,
     };
+    const char *extensions[INSTANCE_EXTENSIONS_MAX + 1];
+    uint32_t extension_count = 0;
+    const lr_window_system *window = device->window;
+    for (uint32_t i = 0; window && i < window->extension_count; i++)
+        if (extension_count < INSTANCE_EXTENSIONS_MAX)
+            extensions[extension_count++] = window->extensions[i];
+    if (validation)
+        extensions[extension_count++] = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
     VkApplicationInfo application = {
         .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
         .pApplicationName = "lavaray",
@@ -93,8 +101,8 @@ static lr_status create_instance(lr_device *device, bool validation, lr_error *e
         .pApplicationInfo = &application,
         .enabledLayerCount = validation,
         .ppEnabledLayerNames = &layer,
-        .enabledExtensionCount = validation,
-        .ppEnabledExtensionNames = &extension,
+        .enabledExtensionCount = extension_count,
+        .ppEnabledExtensionNames = extensions,
     };
     LR_VK(&device->vk, vkCreateInstance, &desc, NULL, &device->instance);
     status = lr_vk_load_instance(&device->vk, device->instance, error);
@@ -131,21 +139,26 @@ static bool has_extension(const lr_vk *vk, VkPhysicalDevice physical, const char
     return false;
 }
 
-static uint32_t find_queue_family(const lr_vk *vk, VkPhysicalDevice physical)
+/* The first family that computes and, where there is a window, can show pictures in it. */
+static uint32_t find_queue_family(const lr_device *device, VkPhysicalDevice physical)
 {
+    const lr_vk *vk = &device->vk;
+    const lr_window_system *window = device->window;
     VkQueueFamilyProperties families[32];
     uint32_t count = 32;
     vk->vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families);
     for (uint32_t i = 0; i < count; i++)
-        if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT)
+        if ((families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) &&
+            (!window || window->can_present(device->instance, physical, i)))
             return i;
     return UINT32_MAX;
 }
 
 /* Fills in all that is known of a physical device before it is opened. */
-static void describe(const lr_vk *vk, VkPhysicalDevice physical, lr_device_info *info,
+static void describe(const lr_device *device, VkPhysicalDevice physical, lr_device_info *info,
                      VkPhysicalDeviceLimits *limits, lr_spirv_modes *modes)
 {
+    const lr_vk *vk = &device->vk;
     VkPhysicalDeviceFloatControlsProperties floats = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FLOAT_CONTROLS_PROPERTIES};
     VkPhysicalDeviceDriverProperties driver = {
@@ -166,8 +179,9 @@ static void describe(const lr_vk *vk, VkPhysicalDevice physical, lr_device_info 
         snprintf(info->driver, sizeof info->driver, "driver %u", p->driverVersion);
     if (p->apiVersion < VK_API_VERSION_1_1)
         snprintf(info->missing, sizeof info->missing, "Vulkan 1.1");
-    else if (find_queue_family(vk, physical) == UINT32_MAX)
-        snprintf(info->missing, sizeof info->missing, "a compute queue");
+    else if (find_queue_family(device, physical) == UINT32_MAX)
+        snprintf(info->missing, sizeof info->missing, "a compute queue%s",
+                 device->window ? " that shows pictures in windows" : "");
     else if (p->limits.maxPerStageDescriptorStorageBuffers < STORAGE_BUFFERS_NEEDED)
         snprintf(info->missing, sizeof info->missing, "%d storage buffers a stage (it has %u)",
                  STORAGE_BUFFERS_NEEDED, p->limits.maxPerStageDescriptorStorageBuffers);
@@ -206,7 +220,7 @@ lr_status lr_device_list(lr_device_info **devices, uint32_t *count, lr_error *er
             status = lr_fail(error, LR_ERROR_MEMORY, "out of memory");
     }
     for (uint32_t i = 0; !status && i < found; i++)
-        describe(&probe->vk, physical[i], &(*devices)[i], &probe->limits, &probe->modes);
+        describe(probe, physical[i], &(*devices)[i], &probe->limits, &probe->modes);
     if (!status)
         *count = found;
     lr_device_close(probe);
@@ -262,7 +276,7 @@ static lr_status choose(lr_device *device, const char *select, lr_error *error)
         lr_device_info info;
         VkPhysicalDeviceLimits limits;
         lr_spirv_modes modes;
-        describe(&device->vk, physical[i], &info, &limits, &modes);
+        describe(device, physical[i], &info, &limits, &modes);
         if (!matches(select, &info, i))
             continue;
         if (!info.usable) {
@@ -302,7 +316,7 @@ static lr_status create_device(lr_device *device, lr_error *error)
 {
     lr_status status = LR_OK;
     lr_vk *vk = &device->vk;
-    device->queue_family = find_queue_family(vk, device->physical);
+    device->queue_family = find_queue_family(device, device->physical);
     device->shuffle_size = get_shuffle_size(vk, device->physical);
     vk->vkGetPhysicalDeviceMemoryProperties(device->physical, &device->memory);
     float priority = 1;
@@ -313,18 +327,25 @@ static lr_status create_device(lr_device *device, lr_error *error)
         .pQueuePriorities = &priority,
     };
     VkPhysicalDeviceFeatures features = {.robustBufferAccess = VK_TRUE};
-    const char *extension = VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME;
+    const char *extensions[2];
+    uint32_t extension_count = 0;
+    if (device->info.api_version < VK_API_VERSION_1_2 &&
+        has_extension(vk, device->physical, VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME))
+        extensions[extension_count++] = VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME;
+    if (device->window)
+        extensions[extension_count++] = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
     VkDeviceCreateInfo desc = {
         .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
         .queueCreateInfoCount = 1,
         .pQueueCreateInfos = &queue,
-        .enabledExtensionCount = device->info.api_version < VK_API_VERSION_1_2 &&
-                                 has_extension(vk, device->physical, extension),
-        .ppEnabledExtensionNames = &extension,
+        .enabledExtensionCount = extension_count,
+        .ppEnabledExtensionNames = extensions,
         .pEnabledFeatures = &features,
     };
     LR_VK(vk, vkCreateDevice, device->physical, &desc, NULL, &device->handle);
     status = lr_vk_load_device(vk, device->handle, error);
+    if (!status && device->window)
+        status = lr_vk_load_window(vk, device->instance, device->handle, error);
     if (status)
         goto fail;
     vk->vkGetDeviceQueue(device->handle, device->queue_family, 0, &device->queue);
@@ -349,11 +370,18 @@ fail:
 
 lr_status lr_device_open(const lr_device_desc *desc, lr_device **out, lr_error *error)
 {
+    return lr_device_open_window(desc, NULL, out, error);
+}
+
+lr_status lr_device_open_window(const lr_device_desc *desc, const lr_window_system *window,
+                                lr_device **out, lr_error *error)
+{
     *out = NULL;
     double start = lr_now();
     lr_device *device = lr_alloc(1, sizeof *device);
     if (!device)
         return lr_fail(error, LR_ERROR_MEMORY, "out of memory");
+    device->window = window;
     lr_status status = create_instance(device, desc->validation, error);
     if (!status)
         status = choose(device, desc->select ? desc->select : "auto", error);

@@ -6,6 +6,15 @@
 #include "gpu/spirv.h"
 #include "gpu/vulkan.h"
 
+/* Where a device is to show pictures. The functions may be called from any thread. */
+typedef struct lr_window_system {
+    const char *const *extensions; /* of the instance */
+    uint32_t extension_count;
+    bool (*can_present)(VkInstance instance, VkPhysicalDevice physical, uint32_t queue_family);
+    VkResult (*create_surface)(void *window, VkInstance instance, VkSurfaceKHR *surface);
+    void *window;
+} lr_window_system;
+
 struct lr_device {
     lr_vk vk;
     VkInstance instance;
@@ -22,11 +31,16 @@ struct lr_device {
     lr_spirv_modes modes; /* float-control modes that the device offers */
     lr_device_info info;
     uint32_t shuffle_size; /* invocations of a compute subgroup if they can shuffle, else 1 */
-    bool exact;            /* passed the arithmetic self-test */
+    const lr_window_system *window; /* NULL: none */
+    bool exact;                     /* passed the arithmetic self-test */
     double open_seconds;
     uint32_t message_count; /* validation messages */
     char first_message[1024];
 };
+
+/* lr_device_open for a device that can show pictures there; `window` must outlive it. */
+lr_status lr_device_open_window(const lr_device_desc *desc, const lr_window_system *window,
+                                lr_device **device, lr_error *error);
 
 /* Seconds on a clock that only goes forward. */
 double lr_now(void);

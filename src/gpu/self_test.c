@@ -89,7 +89,7 @@ lr_status lr_self_test(lr_device *device, bool *exact, lr_error *error)
     if (!status)
         status = lr_commands_begin(device, error);
     if (!status) {
-        lr_commands_write(device, &in, given, sizeof given);
+        lr_commands_write(device, &in, 0, given, sizeof given);
         lr_commands_barrier(device);
         lr_commands_dispatch(device, &layout, program, set, NULL,
                              LR_SELF_TEST_COUNT / LR_GROUP_SIZE, 1, 1);

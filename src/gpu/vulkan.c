@@ -53,6 +53,23 @@ lr_status lr_vk_load_device(lr_vk *vk, VkDevice device, lr_error *error)
     return LR_OK;
 }
 
+lr_status lr_vk_load_window(lr_vk *vk, VkInstance instance, VkDevice device, lr_error *error)
+{
+#define X(name)                                                                                    \
+    vk->name = (PFN_##name)vk->vkGetInstanceProcAddr(instance, #name);                             \
+    if (!vk->name)                                                                                 \
+        return lr_fail(error, LR_ERROR_DEVICE, "the Vulkan driver lacks %s", #name);
+    LR_VK_WINDOW_INSTANCE(X)
+#undef X
+#define X(name)                                                                                    \
+    vk->name = (PFN_##name)vk->vkGetDeviceProcAddr(device, #name);                                 \
+    if (!vk->name)                                                                                 \
+        return lr_fail(error, LR_ERROR_DEVICE, "the Vulkan driver lacks %s", #name);
+    LR_VK_WINDOW_DEVICE(X)
+#undef X
+    return LR_OK;
+}
+
 static const char *result_name(VkResult result)
 {
     switch (result) {
@@ -74,6 +91,9 @@ static const char *result_name(VkResult result)
         CASE(VK_ERROR_TOO_MANY_OBJECTS)
         CASE(VK_ERROR_FRAGMENTED_POOL)
         CASE(VK_ERROR_OUT_OF_POOL_MEMORY)
+        CASE(VK_ERROR_SURFACE_LOST_KHR)
+        CASE(VK_ERROR_OUT_OF_DATE_KHR)
+        CASE(VK_ERROR_NATIVE_WINDOW_IN_USE_KHR)
 #undef CASE
     default:
         return "an unknown error";

@@ -65,6 +65,7 @@
     X(vkCmdDispatchIndirect)                                                                       \
     X(vkCmdPipelineBarrier)                                                                        \
     X(vkCmdCopyBuffer)                                                                             \
+    X(vkCmdCopyBufferToImage)                                                                      \
     X(vkCmdFillBuffer)                                                                             \
     X(vkCmdUpdateBuffer)                                                                           \
     X(vkCreateFence)                                                                               \
@@ -73,12 +74,28 @@
     X(vkWaitForFences)                                                                             \
     X(vkQueueSubmit)
 
+/* Functions of devices that show pictures in windows. */
+#define LR_VK_WINDOW_INSTANCE(X)                                                                   \
+    X(vkDestroySurfaceKHR)                                                                         \
+    X(vkGetPhysicalDeviceSurfaceSupportKHR)                                                        \
+    X(vkGetPhysicalDeviceSurfaceCapabilitiesKHR)                                                   \
+    X(vkGetPhysicalDeviceSurfaceFormatsKHR)                                                        \
+    X(vkGetPhysicalDeviceSurfacePresentModesKHR)
+#define LR_VK_WINDOW_DEVICE(X)                                                                     \
+    X(vkCreateSwapchainKHR)                                                                        \
+    X(vkDestroySwapchainKHR)                                                                       \
+    X(vkGetSwapchainImagesKHR)                                                                     \
+    X(vkAcquireNextImageKHR)                                                                       \
+    X(vkQueuePresentKHR)
+
 typedef struct lr_vk {
     PFN_vkGetInstanceProcAddr vkGetInstanceProcAddr;
 #define X(name) PFN_##name name;
     LR_VK_GLOBAL(X)
     LR_VK_INSTANCE(X)
     LR_VK_DEVICE(X)
+    LR_VK_WINDOW_INSTANCE(X)
+    LR_VK_WINDOW_DEVICE(X)
 #undef X
     /* Only with VK_EXT_debug_utils. */
     PFN_vkCreateDebugUtilsMessengerEXT vkCreateDebugUtilsMessengerEXT;
@@ -89,6 +106,8 @@ typedef struct lr_vk {
 lr_status lr_vk_load(lr_vk *vk, lr_error *error);
 lr_status lr_vk_load_instance(lr_vk *vk, VkInstance instance, lr_error *error);
 lr_status lr_vk_load_device(lr_vk *vk, VkDevice device, lr_error *error);
+/* The functions of windows, where instance and device have the extensions for them. */
+lr_status lr_vk_load_window(lr_vk *vk, VkInstance instance, VkDevice device, lr_error *error);
 
 /* Records that the Vulkan function `call` returned `result`. */
 lr_status lr_vk_fail(lr_error *error, const char *call, VkResult result);

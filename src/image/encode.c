@@ -9,9 +9,14 @@
 
 #define EXPOSURE_LIMIT 200.0f /* stops; float32 spans 277 */
 
+float lr_exposed(float value, double scale)
+{
+    return scale == 1 ? value : (float)(value * scale);
+}
+
 float image_exposed(const image_encoder *encoder, float value)
 {
-    return encoder->scale == 1 ? value : (float)(value * encoder->scale);
+    return lr_exposed(value, encoder->scale);
 }
 
 bool image_buffer_write(image_buffer *buffer, size_t offset, const void *bytes, size_t size)

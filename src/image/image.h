@@ -1,5 +1,4 @@
-/* Pictures in memory to bytes in files: transfer curves and the PPM, PNG, PFM and EXR
- * writers. The
+/* Pictures in memory to bytes in files: transfer curves and the PPM, PNG, PFM and EXR writers. The
  * public half (lr_picture, lr_encoding, lr_picture_write, lr_picture_hash) is in lavaray.h. */
 #ifndef LR_IMAGE_IMAGE_H
 #define LR_IMAGE_IMAGE_H
@@ -24,6 +23,9 @@ void lr_curve_free(lr_curve *curve);
 
 /* The encoded value, 0..maxval; NaN and negative values encode to 0. */
 uint32_t lr_curve_encode(const lr_curve *curve, float linear);
+
+/* A value with the exposure applied, before it is encoded: times scale, 2^stops. */
+float lr_exposed(float value, double scale);
 
 /* Encodes the whole picture in memory; the caller frees *bytes. */
 lr_status lr_picture_encode(const lr_picture *picture, const lr_encoding *encoding,

@@ -122,7 +122,7 @@ static lr_status pack_materials(const lr_scene *scene, lr_packed_scene *packed, 
     return LR_OK;
 }
 
-static void pack_light(const lr_light *light, struct gpu_light *out)
+void lr_pack_light(const lr_light *light, struct gpu_light *out)
 {
     *out = (struct gpu_light){
         .position = lr_pack_vec3(light->position),
@@ -143,20 +143,22 @@ static void pack_light(const lr_light *light, struct gpu_light *out)
     }
 }
 
-static lr_status pack_lights(const lr_scene *scene, const lr_light *fallback,
-                             lr_packed_scene *packed, lr_error *error)
+static lr_status pack_lights(const lr_scene *scene, lr_packed_scene *packed, lr_error *error)
 {
-    const lr_light *lights = scene->default_light ? fallback : scene->lights;
+    /* A scene that names no lights has one that follows the camera: lr_pack_camera writes it. */
     uint32_t count = scene->default_light ? 1 : scene->light_count;
     packed->frame.lights = packed->row_count;
     packed->light_count = count;
     for (uint32_t i = 0; i < count; i++) {
-        struct gpu_light record;
-        pack_light(&lights[i], &record);
+        struct gpu_light record = {.flags = 0};
+        if (!scene->default_light)
+            lr_pack_light(&scene->lights[i], &record);
         if (lr_pack_rows(packed, &record, sizeof record / 16) == UINT32_MAX)
             return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's lights");
-        packed->constants[LR_SPEC_FALLOFF] |= lights[i].falloff > 0;
-        packed->constants[LR_SPEC_SPOTS] |= lights[i].kind == LR_LIGHT_SPOT;
+        if (scene->default_light)
+            continue;
+        packed->constants[LR_SPEC_FALLOFF] |= scene->lights[i].falloff > 0;
+        packed->constants[LR_SPEC_SPOTS] |= scene->lights[i].kind == LR_LIGHT_SPOT;
     }
     return LR_OK;
 }
@@ -165,44 +167,27 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
                         lr_error *error)
 {
     *packed = (lr_packed_scene){.leaf_size = settings->leaf_size, .threads = settings->threads};
-    const lr_camera *camera = settings->camera;
-    lr_vec3 forward = lr_vec3_normalize(lr_vec3_sub(camera->to, camera->from));
-    lr_vec3 right = lr_vec3_normalize(lr_vec3_cross(forward, camera->up));
-    lr_vec3 up = lr_vec3_cross(right, forward);
-    double sine, cosine;
-    lr_sincos_degrees(camera->fov / 2, &sine, &cosine);
-    uint32_t rows = settings->height;
-    double pixel = 2 * sine / cosine / (camera->fov_to_centers && rows > 1 ? rows - 1 : rows);
     packed->frame = (struct gpu_frame){
-        .origin = lr_pack_vec3(camera->from),
-        .half_width = (float)(settings->width * 0.5),
-        .forward = lr_pack_vec3(forward),
-        .half_height = (float)(settings->height * 0.5),
-        .pixel_right = lr_pack_vec3(lr_vec3_scale(right, pixel)),
-        .inv_samples = (float)(1.0 / settings->samples),
-        .pixel_down = lr_pack_vec3(lr_vec3_scale(up, -pixel)),
-        .samples = settings->samples,
         .background_low = lr_pack_vec3(scene->background[0]),
-        .seed = settings->seed,
         .background_high = lr_pack_vec3(scene->background[1]),
-        .depth = settings->depth,
         .background_up = lr_pack_vec3(scene->background_up),
         .min_weight = (float)scene->image.min_weight,
         .fog_color = lr_pack_vec3(scene->fog_color),
         .fog_density = (float)(scene->fog_density * LOG2_E),
     };
     packed->constants[LR_SPEC_FOG] = scene->fog_density > 0;
-    lr_light light = lr_default_light(camera);
     lr_status status = lr_pack_texture_records(scene, packed, error);
     if (!status)
         status = pack_materials(scene, packed, error);
     if (!status)
-        status = pack_lights(scene, &light, packed, error);
+        status = pack_lights(scene, packed, error);
     if (!status)
-        status = lr_pack_objects(scene, settings, packed, error);
+        status = lr_pack_objects(scene, packed, error);
     if (!status)
         status = lr_pack_textures(scene, packed, error);
-    if (status)
+    if (!status)
+        lr_pack_camera(scene, settings, packed);
+    else
         lr_packed_scene_free(packed);
     return status;
 }

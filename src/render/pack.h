@@ -32,6 +32,10 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
                         lr_error *error);
 void lr_packed_scene_free(lr_packed_scene *packed);
 
+/* pack_camera.c: what depends on the settings alone, so that another camera, size or depth needs no
+ * more than this: the camera and the media around it, and the light of scenes that name none. */
+void lr_pack_camera(const lr_scene *scene, const lr_settings *settings, lr_packed_scene *packed);
+
 /* Appends `rows` rows from `record`; returns the index of the first, or UINT32_MAX when memory is
  * out. */
 uint32_t lr_pack_rows(lr_packed_scene *packed, const void *record, uint32_t rows);
@@ -40,13 +44,14 @@ uint32_t lr_pack_rows(lr_packed_scene *packed, const void *record, uint32_t rows
 bool lr_pack_reserve(lr_packed_scene *packed, uint64_t rows);
 
 /* pack_objects.c: the primitives, objects and media of the scene. */
-lr_status lr_pack_objects(const lr_scene *scene, const lr_settings *settings,
-                          lr_packed_scene *packed, lr_error *error);
+lr_status lr_pack_objects(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);
 
 /* pack_textures.c: first makes room for the records of the scene's textures, texture i in row i,
  * and last fills them and appends their texels. */
 lr_status lr_pack_texture_records(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);
 lr_status lr_pack_textures(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);
+
+void lr_pack_light(const lr_light *light, struct gpu_light *out);
 
 vec3 lr_pack_vec3(lr_vec3 v);
 bool lr_color_is_black(lr_color color);

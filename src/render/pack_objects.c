@@ -29,8 +29,7 @@ static const lr_material *material_of(const lr_scene *scene, uint32_t object)
 }
 
 /* Packs the table of media and gives the ranks of the objects' media in ranks[]. */
-static lr_status pack_media(const lr_scene *scene, const lr_settings *settings,
-                            const lr_primitive *primitives, uint32_t *ranks,
+static lr_status pack_media(const lr_scene *scene, const lr_primitive *primitives, uint32_t *ranks,
                             lr_packed_scene *packed, lr_error *error)
 {
     medium_order *order = lr_alloc(scene->object_count, sizeof *order);
@@ -46,7 +45,6 @@ static lr_status pack_media(const lr_scene *scene, const lr_settings *settings,
 
     struct gpu_medium outside = {.ior = 1};
     packed->frame.media = lr_pack_rows(packed, &outside, 1);
-    uint32_t inside[LR_MEDIA_MAX] = {0}, inside_count = 0;
     bool fits = packed->frame.media != UINT32_MAX;
     for (uint32_t i = 0; fits && i < count; i++) {
         uint32_t object = order[i].object;
@@ -59,13 +57,7 @@ static lr_status pack_media(const lr_scene *scene, const lr_settings *settings,
         fits = lr_pack_rows(packed, &medium, 1) != UINT32_MAX;
         packed->constants[LR_SPEC_MEDIA] = 1;
         packed->constants[LR_SPEC_ABSORPTION] |= !lr_color_is_black(m->absorption);
-        if (lr_pack_contains(&scene->objects[object], settings->camera->from))
-            inside[inside_count++ % LR_MEDIA_MAX] = i + 1;
     }
-    packed->frame.inside0 = inside[0] | inside[1] << 16;
-    packed->frame.inside1 = inside[2] | inside[3] << 16;
-    packed->frame.inside2 = inside[4] | inside[5] << 16;
-    packed->frame.inside3 = inside[6] | inside[7] << 16;
     free(order);
     return fits ? LR_OK : lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's media");
 }
@@ -148,8 +140,8 @@ static bool pack_object_record(const lr_scene *scene, uint32_t index, const draf
     return lr_pack_rows(packed, &record, sizeof record / 16) != UINT32_MAX;
 }
 
-static lr_status pack_drafts(const lr_scene *scene, const lr_settings *settings, drafts *d,
-                             lr_packed_scene *packed, lr_error *error)
+static lr_status pack_drafts(const lr_scene *scene, drafts *d, lr_packed_scene *packed,
+                             lr_error *error)
 {
     uint32_t count = scene->object_count;
     for (uint32_t i = 0; i < count; i++) {
@@ -163,7 +155,7 @@ static lr_status pack_drafts(const lr_scene *scene, const lr_settings *settings,
         if (d->primitives[i].list != LR_MESHES)
             set_ids(&d->primitives[i], i, d->flags[i]);
     }
-    lr_status status = pack_media(scene, settings, d->primitives, d->ranks, packed, error);
+    lr_status status = pack_media(scene, d->primitives, d->ranks, packed, error);
     if (!status)
         status = lr_pack_lists(d->primitives, count, packed, error);
     if (!status)
@@ -178,8 +170,7 @@ static lr_status pack_drafts(const lr_scene *scene, const lr_settings *settings,
     return LR_OK;
 }
 
-lr_status lr_pack_objects(const lr_scene *scene, const lr_settings *settings,
-                          lr_packed_scene *packed, lr_error *error)
+lr_status lr_pack_objects(const lr_scene *scene, lr_packed_scene *packed, lr_error *error)
 {
     uint32_t count = scene->object_count;
     drafts d = {
@@ -190,7 +181,7 @@ lr_status lr_pack_objects(const lr_scene *scene, const lr_settings *settings,
     };
     lr_status status = LR_OK;
     if (d.primitives && d.ranks && d.flags && d.instances)
-        status = pack_drafts(scene, settings, &d, packed, error);
+        status = pack_drafts(scene, &d, packed, error);
     else
         status = lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's objects");
     free(d.primitives);

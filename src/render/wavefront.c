@@ -219,9 +219,64 @@ static lr_status drain_queues(lr_wavefront *w, lr_pass_done done, void *user, do
     return LR_OK;
 }
 
+lr_status lr_wavefront_trace(lr_wavefront *wavefront, const lr_camera_rays *rays, lr_pass_done done,
+                             void *user, double fraction, lr_error *error)
+{
+    lr_wavefront *w = wavefront;
+    struct gpu_work work = {
+        .tile_x = rays->x,
+        .tile_y = rays->y,
+        .tile_width = rays->columns,
+        .tile_height = rays->rows,
+        .first_sample = rays->first_sample,
+        .step = rays->step,
+        .film_first = rays->film_first,
+        .film_pitch = rays->film_pitch,
+    };
+    uint32_t groups[3] = {groups_for(rays->columns, LR_TILE_GROUP),
+                          groups_for(rays->rows, LR_TILE_GROUP), rays->samples};
+    double start = lr_now(), cpu_start = lr_cpu_now();
+    lr_status status =
+        run_pass(w, 0, &work, groups, rays->columns * rays->rows * rays->samples, error);
+    if (!status && !done(user, fraction))
+        status = lr_fail(error, LR_ERROR_INTERRUPTED, "interrupted");
+    if (!status)
+        status = drain_queues(w, done, user, fraction, error);
+    w->stats->trace_seconds += lr_now() - start;
+    w->stats->trace_cpu_seconds += lr_cpu_now() - cpu_start;
+    return status;
+}
+
+lr_status lr_wavefront_settle(lr_wavefront *wavefront, lr_error *error)
+{
+    double start = lr_now(), cpu_start = lr_cpu_now();
+    lr_status status = drain_shadows(wavefront, error);
+    wavefront->stats->trace_seconds += lr_now() - start;
+    wavefront->stats->trace_cpu_seconds += lr_cpu_now() - cpu_start;
+    return status;
+}
+
+void lr_wavefront_discard(lr_wavefront *wavefront)
+{
+    for (uint32_t i = 0; i < LR_GENERATIONS_MAX; i++) {
+        wavefront->queues[i].count = 0;
+        wavefront_close_if_empty(wavefront, &wavefront->queues[i]);
+    }
+    memset(wavefront->shadow_counts, 0, sizeof wavefront->shadow_counts);
+}
+
+lr_status lr_wavefront_clear(lr_wavefront *wavefront, uint32_t pixels, lr_error *error)
+{
+    lr_status status = lr_commands_begin(wavefront->device, error);
+    if (status)
+        return status;
+    lr_commands_zero(wavefront->device, &wavefront->film, 4ull * LR_FILM_WORDS * pixels);
+    return lr_commands_finish(wavefront->device, error);
+}
+
 static lr_status read_film(lr_wavefront *w, const lr_tile *tile, uint32_t samples, lr_error *error)
 {
-    double start = lr_now();
+    double start = lr_now(), cpu_start = lr_cpu_now();
     uint32_t pixels = tile->width * tile->height;
     lr_status status = lr_commands_begin(w->device, error);
     if (status)
@@ -236,6 +291,7 @@ static lr_status read_film(lr_wavefront *w, const lr_tile *tile, uint32_t sample
                              "faulty, try --device cpu",
                              film[i * LR_FILM_WORDS + LR_FILM_SAMPLES], samples);
     w->stats->read_back_seconds += lr_now() - start;
+    w->stats->trace_cpu_seconds += lr_cpu_now() - cpu_start;
     return status;
 }
 
@@ -243,36 +299,27 @@ lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_p
                               void *user, const uint32_t **film, lr_error *error)
 {
     lr_wavefront *w = wavefront;
-    double start = lr_now(), read_before = w->stats->read_back_seconds, cpu_start = lr_cpu_now();
     uint32_t pixels = tile->width * tile->height, samples = w->scene->frame.samples;
-    lr_status status = lr_commands_begin(w->device, error);
-    if (!status) {
-        lr_commands_zero(w->device, &w->film, 4ull * LR_FILM_WORDS * pixels);
-        status = lr_commands_finish(w->device, error);
-    }
+    lr_status status = lr_wavefront_clear(w, pixels, error);
     uint32_t at_once = at_least(w->chunk_rays / pixels, 1);
     for (uint32_t sample = 0; sample < samples && !status; sample += at_once) {
-        uint32_t count = at_most(at_once, samples - sample);
-        struct gpu_work work = {.tile_x = tile->x,
-                                .tile_y = tile->y,
-                                .tile_width = tile->width,
-                                .tile_height = tile->height,
-                                .first_sample = sample};
-        uint32_t groups[3] = {groups_for(tile->width, LR_TILE_GROUP),
-                              groups_for(tile->height, LR_TILE_GROUP), count};
-        double fraction = (double)(sample + count) / samples;
-        status = run_pass(w, 0, &work, groups, pixels * count, error);
-        if (!status && !done(user, fraction))
-            status = lr_fail(error, LR_ERROR_INTERRUPTED, "interrupted");
-        if (!status)
-            status = drain_queues(w, done, user, fraction, error);
+        lr_camera_rays rays = {
+            .x = tile->x,
+            .y = tile->y,
+            .columns = tile->width,
+            .rows = tile->height,
+            .step = 1,
+            .film_pitch = tile->width,
+            .first_sample = sample,
+            .samples = at_most(at_once, samples - sample),
+        };
+        double fraction = (double)(sample + rays.samples) / samples;
+        status = lr_wavefront_trace(w, &rays, done, user, fraction, error);
     }
     if (!status)
-        status = drain_shadows(w, error);
+        status = lr_wavefront_settle(w, error);
     if (!status)
         status = read_film(w, tile, samples, error);
     *film = w->film_host.mapped;
-    w->stats->trace_seconds += lr_now() - start - (w->stats->read_back_seconds - read_before);
-    w->stats->trace_cpu_seconds += lr_cpu_now() - cpu_start;
     return status;
 }

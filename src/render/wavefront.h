@@ -61,6 +61,33 @@ lr_status lr_wavefront_create(lr_device *device, const lr_packed_scene *scene,
                               lr_wavefront *wavefront, lr_error *error);
 void lr_wavefront_destroy(lr_wavefront *wavefront);
 
+/* Camera rays that are traced together: through pixels (x + i step, y + j step) of the picture, i <
+ * columns, j < rows, `samples` of each. */
+typedef struct lr_camera_rays {
+    uint32_t x, y, columns, rows, step;
+    uint32_t film_first; /* the pixel of the film that (x, y) is, */
+    uint32_t film_pitch; /* and how many lie between it and the one below */
+    uint32_t first_sample, samples;
+} lr_camera_rays;
+
+/* Gives the film room for so many pixels, whatever the tile size. */
+lr_status lr_wavefront_resize_film(lr_wavefront *wavefront, uint32_t pixels, lr_error *error);
+
+/* Takes over what lr_pack_camera has changed in the scene. */
+lr_status lr_wavefront_update_camera(lr_wavefront *wavefront, lr_error *error);
+
+/* Makes the first `pixels` pixels of the film black. */
+lr_status lr_wavefront_clear(lr_wavefront *wavefront, uint32_t pixels, lr_error *error);
+
+/* Traces at most chunk_rays camera rays and all that comes of them; `fraction` is what `done` is
+ * told. Shadow rays may be left waiting until the film is settled. */
+lr_status lr_wavefront_trace(lr_wavefront *wavefront, const lr_camera_rays *rays, lr_pass_done done,
+                             void *user, double fraction, lr_error *error);
+lr_status lr_wavefront_settle(lr_wavefront *wavefront, lr_error *error);
+
+/* Forgets the rays that wait after an interruption; what they had brought stays in the film. */
+void lr_wavefront_discard(lr_wavefront *wavefront);
+
 /* Renders all samples of a tile of at most tile_size pixels a side. *film then points at
  * LR_FILM_WORDS words a pixel, valid until the next call. */
 lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_pass_done done,

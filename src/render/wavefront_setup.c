@@ -266,7 +266,7 @@ lr_status wavefront_open_generation(lr_wavefront *w, uint32_t generation, lr_err
 void wavefront_reset_counters(lr_wavefront *w)
 {
     struct gpu_counters zero = {.hit_groups_y = 1, .hit_groups_z = 1};
-    lr_commands_write(w->device, &w->counters, &zero, sizeof zero);
+    lr_commands_write(w->device, &w->counters, 0, &zero, sizeof zero);
 }
 
 /* Drivers compile a kernel when it first runs, so each runs once here on nothing. */
@@ -283,6 +283,26 @@ static lr_status warm_up(lr_wavefront *w, lr_error *error)
         lr_commands_barrier(w->device);
         lr_commands_dispatch(w->device, &w->layout, w->programs[i], w->set, &nothing, 1, 1, 1);
     }
+    return lr_commands_finish(w->device, error);
+}
+
+lr_status lr_wavefront_resize_film(lr_wavefront *w, uint32_t pixels, lr_error *error)
+{
+    lr_buffer_destroy(w->device, &w->film);
+    return lr_buffer_create(w->device, LR_BUFFER_STORAGE, 4ull * LR_FILM_WORDS * pixels, "the film",
+                            &w->film, error);
+}
+
+lr_status lr_wavefront_update_camera(lr_wavefront *w, lr_error *error)
+{
+    lr_status status = lr_commands_begin(w->device, error);
+    if (status)
+        return status;
+    lr_commands_write(w->device, &w->frame, 0, &w->scene->frame, sizeof w->scene->frame);
+    uint32_t light = w->scene->frame.lights;
+    if (w->scene->light_count > 0)
+        lr_commands_write(w->device, &w->rows, 16ull * light, &w->scene->rows[light],
+                          sizeof(struct gpu_light));
     return lr_commands_finish(w->device, error);
 }
 

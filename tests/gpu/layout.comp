@@ -196,6 +196,9 @@ void main()
     for (uint k = 0u; k < 4u; k++)
         put(work.shadow_first[k]);
     put(work.sorted);
+    put(work.step);
+    put(work.film_first);
+    put(work.film_pitch);
     put(counters.hit_groups); put(counters.hit_groups_y); put(counters.hit_groups_z);
     put(counters.hits); put(counters.rays); put(counters.traced); put(counters.shaded);
     put(counters.reflected); put(counters.refracted); put(counters.passed);

@@ -159,7 +159,7 @@ static uint32_t device_trace(lr_wavefront *w, const ray_set *set, int kind, timi
         struct gpu_counters zero = {.hit_groups_y = 1, .hit_groups_z = 1};
         uint32_t a_group = LR_GROUP_SIZE * w->rays_at_once;
         check(lr_commands_begin(w->device, &error), &error);
-        lr_commands_write(w->device, &w->counters, &zero, sizeof zero);
+        lr_commands_write(w->device, &w->counters, 0, &zero, sizeof zero);
         check(lr_commands_finish(w->device, &error), &error);
         timing_start(t);
         check(lr_commands_begin(w->device, &error), &error);

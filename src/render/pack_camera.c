@@ -1,0 +1,59 @@
+/* The picture that is asked for: camera, size, samples. */
+#include "render/pack_internal.h"
+
+#include <string.h>
+
+/* The media around the camera: of more than LR_MEDIA_MAX the ones that rank highest. */
+static void pack_inside(const lr_scene *scene, const lr_camera *camera, lr_packed_scene *packed)
+{
+    uint32_t inside[LR_MEDIA_MAX] = {0};
+    bool media = packed->constants[LR_SPEC_MEDIA];
+    for (uint32_t i = 0; media && i < scene->object_count; i++) {
+        struct gpu_object record;
+        memcpy(&record, &packed->rows[packed->frame.objects + i * (sizeof record / 16)],
+               sizeof record);
+        if (record.rank == 0 || !lr_pack_contains(&scene->objects[i], camera->from))
+            continue;
+        uint32_t lowest = 0;
+        for (uint32_t k = 1; k < LR_MEDIA_MAX; k++)
+            if (inside[k] < inside[lowest])
+                lowest = k;
+        if (record.rank > inside[lowest])
+            inside[lowest] = record.rank;
+    }
+    packed->frame.inside0 = inside[0] | inside[1] << 16;
+    packed->frame.inside1 = inside[2] | inside[3] << 16;
+    packed->frame.inside2 = inside[4] | inside[5] << 16;
+    packed->frame.inside3 = inside[6] | inside[7] << 16;
+}
+
+void lr_pack_camera(const lr_scene *scene, const lr_settings *settings, lr_packed_scene *packed)
+{
+    const lr_camera *camera = settings->camera;
+    lr_vec3 forward = lr_vec3_normalize(lr_vec3_sub(camera->to, camera->from));
+    lr_vec3 right = lr_vec3_normalize(lr_vec3_cross(forward, camera->up));
+    lr_vec3 up = lr_vec3_cross(right, forward);
+    double sine, cosine;
+    lr_sincos_degrees(camera->fov / 2, &sine, &cosine);
+    uint32_t rows = settings->height;
+    double pixel = 2 * sine / cosine / (camera->fov_to_centers && rows > 1 ? rows - 1 : rows);
+    struct gpu_frame *frame = &packed->frame;
+    frame->origin = lr_pack_vec3(camera->from);
+    frame->forward = lr_pack_vec3(forward);
+    frame->pixel_right = lr_pack_vec3(lr_vec3_scale(right, pixel));
+    frame->pixel_down = lr_pack_vec3(lr_vec3_scale(up, -pixel));
+    frame->half_width = (float)(settings->width * 0.5);
+    frame->half_height = (float)(settings->height * 0.5);
+    frame->samples = settings->samples;
+    frame->inv_samples = (float)(1.0 / settings->samples);
+    frame->seed = settings->seed;
+    frame->depth = settings->depth;
+    pack_inside(scene, camera, packed);
+    if (scene->default_light) {
+        lr_light light = lr_default_light(camera);
+        struct gpu_light record;
+        lr_pack_light(&light, &record);
+        memcpy(&packed->rows[frame->lights], &record, sizeof record);
+        packed->constants[LR_SPEC_FALLOFF] = light.falloff > 0;
+    }
+}

@@ -1,0 +1,70 @@
+/* What a caller asks for and what the scene says, as one. */
+#include "render/settings.h"
+
+#include <string.h>
+
+#define PIXELS_MAX (1u << 28)
+
+static lr_status choose_camera(const lr_scene *scene, const char *name, const lr_camera **camera,
+                               lr_error *error)
+{
+    *camera = &scene->cameras[0];
+    if (!name)
+        return LR_OK;
+    char known[512] = "";
+    for (uint32_t i = 0; i < scene->camera_count; i++) {
+        *camera = &scene->cameras[i];
+        if (!(*camera)->name)
+            continue;
+        if (!strcmp((*camera)->name, name))
+            return LR_OK;
+        size_t used = strlen(known);
+        if (used + strlen((*camera)->name) + 3 < sizeof known) {
+            strcat(known, used ? ", " : "");
+            strcat(known, (*camera)->name);
+        }
+    }
+    return lr_fail(error, LR_ERROR_ARGUMENT, "the scene has no camera '%s'; it has %s", name,
+                   known[0] ? known : "one without a name");
+}
+
+lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_settings *settings,
+                    lr_error *error)
+{
+    lr_settings *s = settings;
+    *s = (lr_settings){
+        .width = options->width ? options->width : scene->image.width,
+        .height = options->height ? options->height : scene->image.height,
+        .samples = options->samples ? options->samples : scene->image.samples,
+        .depth = options->has_depth ? (uint32_t)options->depth : scene->image.depth,
+        .seed = options->has_seed ? options->seed : scene->image.seed,
+        .crop_x = options->crop.x,
+        .crop_y = options->crop.y,
+        .crop_width = options->crop.width,
+        .crop_height = options->crop.height,
+        .leaf_size = options->leaf_size,
+        .threads = options->threads,
+    };
+    if (s->width > 32768 || s->height > 32768)
+        return lr_fail(error, LR_ERROR_ARGUMENT, "the size %ux%u is over 32768 (--size)", s->width,
+                       s->height);
+    if (s->samples > 65536)
+        return lr_fail(error, LR_ERROR_ARGUMENT, "%u samples are over 65536 (--spp)", s->samples);
+    if (s->depth > 64)
+        return lr_fail(error, LR_ERROR_ARGUMENT, "the depth %u is over 64 (--depth)", s->depth);
+    if (!s->crop_width || !s->crop_height) {
+        s->crop_x = s->crop_y = 0;
+        s->crop_width = s->width;
+        s->crop_height = s->height;
+    }
+    if (s->crop_width > s->width || s->crop_x > s->width - s->crop_width ||
+        s->crop_height > s->height || s->crop_y > s->height - s->crop_height)
+        return lr_fail(error, LR_ERROR_ARGUMENT,
+                       "the crop %u,%u,%u,%u reaches outside the picture of %ux%u", s->crop_x,
+                       s->crop_y, s->crop_width, s->crop_height, s->width, s->height);
+    if ((uint64_t)s->crop_width * s->crop_height > PIXELS_MAX)
+        return lr_fail(error, LR_ERROR_ARGUMENT,
+                       "%ux%u pixels are over the cap of %u; render parts with --crop",
+                       s->crop_width, s->crop_height, PIXELS_MAX);
+    return choose_camera(scene, options->camera, &s->camera, error);
+}
