@@ -31,6 +31,16 @@ typedef struct lr_error {
 
 typedef struct lr_scene lr_scene;
 
+#define LR_FILES_MAX 4096
+
+/* Paths, each once, up to LR_FILES_MAX of them. Zeroed is empty; lr_file_list_free leaves it so. */
+typedef struct lr_file_list {
+    char **paths;
+    uint32_t count, capacity;
+} lr_file_list;
+
+void lr_file_list_free(lr_file_list *files);
+
 /* How scene files are read. What others made may name any file and claim any size. */
 typedef struct lr_load_options {
     bool allow_path;        /* files may name files outside of the scene's folder */
@@ -40,6 +50,9 @@ typedef struct lr_load_options {
      * false stops with LR_ERROR_INTERRUPTED. */
     bool (*progress)(void *user, const char *what, double fraction);
     void *user;
+    /* NULL, or where loading adds the files that the scene consists of, as they were looked for:
+     * also those that are not there, and also when it fails. */
+    lr_file_list *files;
 } lr_load_options;
 
 /* Reads and checks the scene file at path ("-" is standard input): glTF, OBJ, PLY, STL and NFF by
@@ -228,7 +241,8 @@ typedef struct lr_render_stats {
     uint64_t dropped_nesting; /* ... or media lost because too many were nested */
     uint64_t non_finite;      /* contributions that were NaN or infinite, left out */
     uint64_t saturated;       /* contributions above the film's range, clipped to it */
-    double device_seconds, build_seconds, upload_seconds, compile_seconds, trace_seconds, read_back_seconds;
+    double device_seconds, build_seconds, upload_seconds, compile_seconds, trace_seconds,
+        read_back_seconds;
     /* What all threads computed meanwhile, those of a software driver with them; trace_cpu_seconds
      * has the reading back in it. */
     double build_cpu_seconds, upload_cpu_seconds, compile_cpu_seconds, trace_cpu_seconds;

@@ -54,8 +54,8 @@ lr_status lr_import_resolve(lr_import *import, const char *relative, char **path
     char *own = from_base(import, relative);
     if (!own)
         return lr_fail(error, LR_ERROR_MEMORY, "%s: out of memory", import->shown);
-    bool allow = import->options.allow_path;
-    lr_status status = lr_path_resolve(import->base_file, own, allow, path, error);
+    const lr_load_options *options = &import->options;
+    lr_status status = lr_path_resolve(import->base_file, own, options, path, error);
     /* As a URI, or with the backslashes of other systems. */
     if (status == LR_ERROR_FILE && (strchr(own, '%') || strchr(own, '\\'))) {
         char *other = decode_percent(own);
@@ -63,7 +63,7 @@ lr_status lr_import_resolve(lr_import *import, const char *relative, char **path
             if (*c == '\\')
                 *c = '/';
         lr_error ignored;
-        if (other && lr_path_resolve(import->base_file, other, allow, path, &ignored) == LR_OK)
+        if (other && lr_path_resolve(import->base_file, other, options, path, &ignored) == LR_OK)
             status = LR_OK;
         free(other);
     }

@@ -8,6 +8,7 @@
 #include "scene/import.h"
 #include "scene/nff.h"
 #include "scene/node.h"
+#include "scene/path.h"
 
 lr_status lr_scene_load(const char *path, const lr_load_options *options, lr_scene **scene,
                         char **report, lr_error *error)
@@ -16,6 +17,8 @@ lr_status lr_scene_load(const char *path, const lr_load_options *options, lr_sce
     size_t length;
     *scene = NULL;
     *report = NULL;
+    if (strcmp(path, "-") != 0 && !lr_file_list_add(options, path))
+        return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the name of the scene");
     if (lr_import_knows(path))
         return lr_import_scene(path, options, scene, error);
     bool nff = lr_nff_is_path(path);

@@ -204,6 +204,18 @@ static void place_empty(builder *b, lr_node *node)
     node->offset = (uint32_t)offset;
 }
 
+/* From its opening to its closing quote; what is not there has no bytes. */
+static void place_scalar(const builder *b, lr_node *node, struct fy_token *token)
+{
+    const struct fy_mark *end = token ? fy_token_end_mark(token) : NULL;
+    node->start = token ? node->offset : b->last_offset;
+    node->end = end ? (uint32_t)end->input_pos : node->start;
+    char quote = b->report->text[node->start];
+    bool quoted = node->kind == LR_NODE_QUOTED && (quote == '"' || quote == '\'');
+    if (quoted && node->end < b->report->length && b->report->text[node->end] == quote)
+        node->end++;
+}
+
 static void add_scalar(builder *b, struct fy_event *event, const char *anchor, size_t anchor_length)
 {
     struct fy_token *token = event->scalar.value;
@@ -227,6 +239,7 @@ static void add_scalar(builder *b, struct fy_event *event, const char *anchor, s
     }
     if (!start)
         place_empty(b, node);
+    place_scalar(b, node, start ? token : NULL);
     push(b, node);
     set_anchor(b, node, anchor, anchor_length);
 }
@@ -242,7 +255,15 @@ static void add_alias(builder *b, struct fy_event *event)
     uint32_t index;
     char shown[LR_SHOWN_MAX];
     if (lr_names_get(&b->anchors, name, length, &index)) {
-        push(b, b->anchored[index]);
+        lr_node *node = tree_alloc(b->tree, sizeof *node);
+        if (!node) {
+            out_of_memory(b);
+            return;
+        }
+        *node = *b->anchored[index];
+        node->start = (uint32_t)offset;
+        node->end = (uint32_t)(offset + 1 + length);
+        push(b, node);
         return;
     }
     bool inside = false;
@@ -303,7 +324,7 @@ static bool check_key(builder *b, const lr_node *key, lr_names *seen, const lr_n
     return true;
 }
 
-static void close_frame(builder *b)
+static void close_frame(builder *b, struct fy_event *event)
 {
     frame top = b->frames[--b->depth];
     lr_node *node = top.node;
@@ -334,6 +355,12 @@ static void close_frame(builder *b)
         }
         lr_names_free(&seen);
     }
+    /* The end of one without brackets is noticed only at what follows. */
+    char bracket = b->report->text[node->offset];
+    const struct fy_mark *end = fy_event_end_mark(event);
+    bool flow = (bracket == '[' || bracket == '{') && end;
+    node->start = node->offset;
+    node->end = flow ? (uint32_t)end->input_pos : count ? children[count - 1]->end : node->start;
     node->size = size > LR_NODES_MAX ? LR_NODES_MAX + 1 : (uint32_t)size;
     b->pending_count = top.first;
     if (size > LR_NODES_MAX) {
@@ -392,7 +419,7 @@ static void take_event(builder *b, struct fy_event *event)
         break;
     case FYET_SEQUENCE_END:
     case FYET_MAPPING_END:
-        close_frame(b);
+        close_frame(b, event);
         break;
     default:
         break;

@@ -21,10 +21,12 @@ typedef enum lr_node_kind {
 typedef struct lr_node lr_node;
 struct lr_node {
     lr_node_kind kind;
-    uint32_t offset; /* where it starts in the text; of an empty value: its key or dash */
-    uint32_t line;   /* from 1 */
-    uint32_t size;   /* nodes below and including it, through aliases */
-    uint32_t count;  /* bytes of text, items of a list, pairs of a map */
+    uint32_t offset;     /* where it starts in the text; of an empty value: its key or dash */
+    uint32_t line;       /* from 1 */
+    uint32_t size;       /* nodes below and including it, through aliases */
+    uint32_t count;      /* bytes of text, items of a list, pairs of a map */
+    uint32_t start, end; /* the bytes that stand for it here, without its anchor: where it is an
+                            alias, that one's and not the value's, which `offset` and `line` tell */
     union {
         const char *text;      /* NUL-terminated, may hold further NULs */
         const lr_node **items; /* a map's are key, value, key, value, ... */

@@ -59,19 +59,49 @@ done:
     return status;
 }
 
-lr_status lr_path_resolve(const char *base_file, const char *relative, bool allow_outside,
-                          char **path, lr_error *error)
+bool lr_file_list_add(const lr_load_options *options, const char *path)
 {
+    lr_file_list *files = options ? options->files : NULL;
+    for (uint32_t i = 0; files && i < files->count; i++)
+        if (strcmp(files->paths[i], path) == 0)
+            return true;
+    if (!files || files->count == LR_FILES_MAX)
+        return true;
+    char *copy = lr_string_copy(path, strlen(path));
+    if (!copy || !lr_array_reserve((void **)&files->paths, files->count, &files->capacity,
+                                   sizeof *files->paths)) {
+        free(copy);
+        return false;
+    }
+    files->paths[files->count++] = copy;
+    return true;
+}
+
+void lr_file_list_free(lr_file_list *files)
+{
+    for (uint32_t i = 0; i < files->count; i++)
+        free(files->paths[i]);
+    free(files->paths);
+    *files = (lr_file_list){0};
+}
+
+lr_status lr_path_resolve(const char *base_file, const char *relative,
+                          const lr_load_options *options, char **path, lr_error *error)
+{
+    bool allow_outside = options->allow_path;
     struct stat info;
     *path = NULL;
     if (relative[0] == 0)
         return lr_fail(error, LR_ERROR_FILE, "the name of a file is empty");
     char *joined = join(base_file, relative);
-    if (!joined)
+    bool reachable = allow_outside || relative[0] != '/';
+    if (!joined || (reachable && !lr_file_list_add(options, joined))) {
+        free(joined);
         return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the name of a file");
+    }
     lr_status status = LR_OK;
     /* Before anything is said of what lies outside, such as whether it exists. */
-    if (!allow_outside && relative[0] == '/')
+    if (!reachable)
         status = lr_fail(error, LR_ERROR_FILE,
                          SHOWN " is an absolute path; write it as seen from the folder of " SHOWN
                                " or allow it with --allow-path",

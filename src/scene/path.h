@@ -5,10 +5,13 @@
 #include "base/status.h"
 
 /* Finds the regular file that `relative` names as seen from the folder of base_file, and leaves a
- * path to it in *path, which the caller frees. Unless allow_outside, the file must lie in that
- * folder or below it, symbolic links followed. LR_ERROR_FILE with the cause and the remedy;
- * LR_ERROR_MEMORY. */
-lr_status lr_path_resolve(const char *base_file, const char *relative, bool allow_outside,
-                          char **path, lr_error *error);
+ * path to it in *path, which the caller frees. Unless options->allow_path, the file must lie in
+ * that folder or below it, symbolic links followed. The path goes into options->files, if only the
+ * file could be put there. LR_ERROR_FILE with the cause and the remedy; LR_ERROR_MEMORY. */
+lr_status lr_path_resolve(const char *base_file, const char *relative,
+                          const lr_load_options *options, char **path, lr_error *error);
+
+/* Adds the path to the options' files, if that is wished for. False when memory is out. */
+bool lr_file_list_add(const lr_load_options *options, const char *path);
 
 #endif

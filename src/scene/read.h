@@ -107,6 +107,13 @@ bool lr_check_extent(lr_reader *reader, const lr_object *object, const lr_node *
 /* Whether b is zero or along a, to within a millionth of a radian. */
 bool lr_parallel(lr_vec3 a, lr_vec3 b);
 
+extern const lr_language lr_scene_language;
+
+/* Runs one of the functions below on the tree's root; what is wrong goes to the report. */
+void lr_read_tree(const lr_tree *tree, lr_scene *scene, lr_report *report,
+                  const lr_load_options *options,
+                  void (*read)(lr_reader *reader, const lr_node *root));
 void lr_read_scene(lr_reader *reader, const lr_node *root);
+void lr_read_cameras(lr_reader *reader, const lr_node *root); /* and nothing else */
 
 #endif

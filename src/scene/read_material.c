@@ -16,8 +16,8 @@ static bool load_image(lr_reader *reader, const lr_node *node, const lr_pattern_
 {
     char *path;
     lr_error error = {0};
-    lr_status status = lr_path_resolve(reader->report->name, draft->image,
-                                       reader->options.allow_path, &path, &error);
+    lr_status status =
+        lr_path_resolve(reader->report->name, draft->image, &reader->options, &path, &error);
     lr_wrap wrap = (lr_wrap)draft->wrap;
     if (!status)
         status = lr_texture_load(&reader->builder, path, wrap, wrap, texture, &error);

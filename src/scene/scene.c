@@ -102,6 +102,14 @@ static void read_all_cameras(lr_reader *reader, const lr_node *root, const lr_gi
         read_cameras(reader, cameras, up);
 }
 
+void lr_read_cameras(lr_reader *reader, const lr_node *root)
+{
+    lr_scene_draft draft = {0};
+    lr_given given;
+    lr_read_record(reader, root, root, &lr_scene_record, &draft, &given);
+    read_all_cameras(reader, root, &given, draft.up);
+}
+
 void lr_read_scene(lr_reader *reader, const lr_node *root)
 {
     const lr_record *record = &lr_scene_record;
@@ -191,12 +199,31 @@ void lr_scene_destroy(lr_scene *scene)
     free(scene);
 }
 
-static const lr_language scene_language = {
+const lr_language lr_scene_language = {
     .subject = "scene",
     .examples = "camera and objects",
     .relief = "bulk geometry belongs in mesh files",
     .knows_key = lr_key_is_known,
 };
+
+void lr_read_tree(const lr_tree *tree, lr_scene *scene, lr_report *report,
+                  const lr_load_options *options,
+                  void (*read)(lr_reader *reader, const lr_node *root))
+{
+    lr_reader reader = {
+        .report = report, .scene = scene, .builder.scene = scene, .default_material = UINT32_MAX};
+    if (options)
+        reader.options = *options;
+    reader.locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (!reader.locale)
+        report->no_memory = true;
+    else if (tree->root)
+        read(&reader, tree->root);
+    if (reader.locale)
+        freelocale(reader.locale);
+    lr_mesh_files_free(&reader.files);
+    lr_names_free(&reader.materials);
+}
 
 /* Reads the report's text into the scene; what is wrong goes to the report. */
 static void read_text(lr_scene *scene, lr_report *report, const lr_load_options *options)
@@ -205,19 +232,7 @@ static void read_text(lr_scene *scene, lr_report *report, const lr_load_options 
         return;
     lr_tree tree;
     lr_tree_read(&tree, report);
-    lr_reader reader = {
-        .report = report, .scene = scene, .builder.scene = scene, .default_material = UINT32_MAX};
-    if (options)
-        reader.options = *options;
-    reader.locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (!reader.locale)
-        report->no_memory = true;
-    else if (tree.root)
-        lr_read_scene(&reader, tree.root);
-    if (reader.locale)
-        freelocale(reader.locale);
-    lr_mesh_files_free(&reader.files);
-    lr_names_free(&reader.materials);
+    lr_read_tree(&tree, scene, report, options, lr_read_scene);
     lr_tree_free(&tree);
 }
 
@@ -273,7 +288,7 @@ lr_status lr_scene_parse_with(const char *text, size_t length, const char *name,
                               const lr_load_options *options, lr_scene **scene, char **report,
                               lr_error *error)
 {
-    return lr_scene_from_text(text, length, name, &scene_language, options, read_text, scene,
+    return lr_scene_from_text(text, length, name, &lr_scene_language, options, read_text, scene,
                               report, error);
 }
 

@@ -10,6 +10,28 @@
 #include "base/memory.h"
 #include "scene/report.h"
 
+char *lr_written(void (*put)(FILE *out, void *something), void *something, size_t *length)
+{
+    char *text = NULL;
+    locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    FILE *out = c_locale ? open_memstream(&text, length) : NULL;
+    bool good = false;
+    if (out) {
+        locale_t before = uselocale(c_locale);
+        put(out, something);
+        uselocale(before);
+        good = !ferror(out);
+        good = fclose(out) == 0 && good;
+    }
+    if (c_locale)
+        freelocale(c_locale);
+    if (!good) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
 void lr_writer_cannot(lr_writer *writer, const char *text)
 {
     uint32_t i = 0;
@@ -231,33 +253,17 @@ static void choose_names(lr_writer *writer)
     }
 }
 
-/* The scene as text, which the caller frees; NULL when memory is out. */
-static char *make_text(lr_writer *writer, lr_scene_format format, size_t *length)
+static void put_scene(FILE *out, void *to)
 {
-    char *text = NULL;
-    locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    writer->out = c_locale ? open_memstream(&text, length) : NULL;
-    bool good = false;
-    if (writer->out) {
-        locale_t before = uselocale(c_locale);
-        choose_names(writer);
-        if (format == LR_SCENE_YAML)
-            lr_write_yaml(writer);
-        else if (format == LR_SCENE_POVRAY)
-            lr_write_povray(writer);
-        else
-            lr_write_tachyon(writer);
-        uselocale(before);
-        good = !ferror(writer->out);
-        good = fclose(writer->out) == 0 && good;
-    }
-    if (c_locale)
-        freelocale(c_locale);
-    if (!good) {
-        free(text);
-        return NULL;
-    }
-    return text;
+    static void (*const writers[])(lr_writer *) = {
+        [LR_SCENE_YAML] = lr_write_yaml,
+        [LR_SCENE_POVRAY] = lr_write_povray,
+        [LR_SCENE_TACHYON] = lr_write_tachyon,
+    };
+    lr_writer *writer = to;
+    writer->out = out;
+    choose_names(writer);
+    writers[writer->format](writer);
 }
 
 /* NULL when there are none; sets *failed when memory is out. */
@@ -280,11 +286,11 @@ static char *notes_text(const lr_writer *writer, bool *failed)
 lr_status lr_scene_write(const lr_scene *scene, const char *path, lr_scene_format format,
                          char **notes, lr_error *error)
 {
-    lr_writer writer = {.scene = scene, .path = path};
+    lr_writer writer = {.scene = scene, .path = path, .format = format};
     size_t length;
     bool failed = false;
     *notes = NULL;
-    char *text = make_text(&writer, format, &length);
+    char *text = lr_written(put_scene, &writer, &length);
     if (text)
         *notes = notes_text(&writer, &failed);
     if (!text || failed) {

@@ -18,6 +18,7 @@ typedef struct lr_writer {
     FILE *out; /* memory; its failures are found when it is closed */
     const lr_scene *scene;
     const char *path; /* where the text will go */
+    lr_scene_format format;
     lr_writer_note notes[LR_WRITER_NOTES_MAX];
     uint32_t note_count;
     char names[32]; /* how the names of materials without one begin: no other begins so */
@@ -27,6 +28,17 @@ typedef struct lr_writer {
 void lr_write_yaml(lr_writer *writer);
 void lr_write_povray(lr_writer *writer);
 void lr_write_tachyon(lr_writer *writer);
+
+/* What `put` writes about something, in the C locale: a text of *length bytes that the caller
+ * frees; NULL when memory is out. */
+char *lr_written(void (*put)(FILE *out, void *something), void *something, size_t *length);
+
+/* The camera as a mapping in braces. */
+void lr_put_camera(FILE *out, const lr_camera *camera);
+
+/* The camera as a line to paste into a scene: `camera: {...}`, or with a name as an entry below
+ * `cameras:`. The caller frees it; NULL when memory is out. */
+char *lr_camera_text(const lr_camera *camera);
 
 /* Counts something that the language cannot say. The same text counts together. */
 void lr_writer_cannot(lr_writer *writer, const char *text);

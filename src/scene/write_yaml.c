@@ -9,19 +9,19 @@
 
 /* A mapping in braces being written. */
 typedef struct mapping {
-    lr_writer *writer;
+    FILE *out;
     bool begun;
 } mapping;
 
 static void put_key(mapping *map, const char *key)
 {
-    fprintf(map->writer->out, "%s%s: ", map->begun ? ", " : "{", key);
+    fprintf(map->out, "%s%s: ", map->begun ? ", " : "{", key);
     map->begun = true;
 }
 
 static void end_mapping(mapping *map)
 {
-    fputs(map->begun ? "}" : "{}", map->writer->out);
+    fputs(map->begun ? "}" : "{}", map->out);
 }
 
 /* As it is where YAML cannot take it for anything else, otherwise as JSON writes it. */
@@ -145,7 +145,7 @@ static void put_record(mapping *map, const lr_record *record, const void *base,
             (left_out && strcmp(field->name, left_out) == 0))
             continue;
         put_key(map, field->name);
-        put_value(map->writer->out, field, value);
+        put_value(map->out, field, value);
     }
 }
 
@@ -159,29 +159,47 @@ static const lr_record *record_of(const lr_record *records, uint32_t count, int 
 
 /* ---- The parts ----------------------------------------------------------------------------- */
 
+void lr_put_camera(FILE *out, const lr_camera *camera)
+{
+    mapping map = {.out = out};
+    put_record(&map, &lr_camera_record, camera, NULL);
+    end_mapping(&map);
+}
+
+static void put_camera_entry(FILE *out, void *entry)
+{
+    const lr_camera *camera = entry;
+    if (camera->name) {
+        fputs("  ", out);
+        put_text(out, camera->name);
+        fputs(": ", out);
+    } else {
+        fputs("camera: ", out);
+    }
+    lr_put_camera(out, camera);
+    fputc('\n', out);
+}
+
+char *lr_camera_text(const lr_camera *camera)
+{
+    lr_camera entry = *camera;
+    size_t length;
+    return lr_written(put_camera_entry, &entry, &length);
+}
+
 static void put_cameras(lr_writer *writer)
 {
     const lr_scene *scene = writer->scene;
-    bool named = scene->cameras[0].name != NULL;
-    fputs(named ? "cameras:\n" : "camera: ", writer->out);
-    for (uint32_t i = 0; i < scene->camera_count; i++) {
-        mapping map = {.writer = writer};
-        if (named) {
-            fputs("  ", writer->out);
-            put_text(writer->out, scene->cameras[i].name);
-            fputs(": ", writer->out);
-        }
-        put_record(&map, &lr_camera_record, &scene->cameras[i], NULL);
-        end_mapping(&map);
-        fputc('\n', writer->out);
-    }
+    fputs(scene->cameras[0].name ? "cameras:\n" : "", writer->out);
+    for (uint32_t i = 0; i < scene->camera_count; i++)
+        put_camera_entry(writer->out, &scene->cameras[i]);
 }
 
 static void put_surroundings(lr_writer *writer)
 {
     const lr_scene *scene = writer->scene;
     FILE *out = writer->out;
-    mapping image = {.writer = writer}, fog = image;
+    mapping image = {.out = out}, fog = image;
     fputs("image: ", out);
     put_record(&image, &lr_image_record, scene, NULL);
     end_mapping(&image);
@@ -225,7 +243,7 @@ static bool put_picture(lr_writer *writer, const lr_pattern *pattern, const lr_r
     }
     if (texture->wrap_u != texture->wrap_v)
         lr_writer_cannot(writer, "pictures that go on in two ways are written with one of them");
-    mapping map = {.writer = writer};
+    mapping map = {.out = writer->out};
     lr_pattern_draft draft = {.pattern = *pattern, .wrap = (uint32_t)texture->wrap_u};
     put_key(&map, "image");
     put_file_name(writer, pattern->texture, ending);
@@ -245,7 +263,7 @@ static void put_paint(lr_writer *writer, const lr_pattern *pattern)
         put_color(writer->out, pattern->colors[0]);
         return;
     }
-    mapping map = {.writer = writer};
+    mapping map = {.out = writer->out};
     lr_pattern_draft draft = {.pattern = *pattern, .space = pattern->object_space};
     draft.to = lr_vec3_add(pattern->origin, pattern->direction);
     put_record(&map, record, &draft, NULL);
@@ -266,7 +284,7 @@ static void put_materials(lr_writer *writer)
     const lr_scene *scene = writer->scene;
     fputs(scene->material_count ? "materials:\n" : "", writer->out);
     for (uint32_t i = 0; i < scene->material_count; i++) {
-        mapping map = {.writer = writer};
+        mapping map = {.out = writer->out};
         fputs("  ", writer->out);
         put_material_name(writer, i);
         fputs(": ", writer->out);
@@ -289,7 +307,7 @@ static void put_lights(lr_writer *writer)
         const lr_record *record =
             record_of(lr_light_records, lr_light_record_count, (int)light->kind);
         lr_light_draft draft = {.light = *light};
-        mapping map = {.writer = writer};
+        mapping map = {.out = writer->out};
         fprintf(writer->out, "  - %s: ", record->name);
         put_record(&map, record, &draft, "to");
         end_mapping(&map);
@@ -301,10 +319,10 @@ static void put_matrix(mapping *map, const lr_transform *t)
 {
     put_key(map, "matrix");
     for (int i = 0; i < 3; i++) {
-        fputs(i ? ", " : "[", map->writer->out);
-        put_vector(map->writer->out, t->m[i], 4);
+        fputs(i ? ", " : "[", map->out);
+        put_vector(map->out, t->m[i], 4);
     }
-    fputc(']', map->writer->out);
+    fputc(']', map->out);
 }
 
 static void put_object(lr_writer *writer, const lr_object *object)
@@ -312,7 +330,7 @@ static void put_object(lr_writer *writer, const lr_object *object)
     const lr_record *record =
         record_of(lr_object_records, lr_object_record_count, (int)object->kind);
     lr_object_draft draft = {.object = *object};
-    mapping map = {.writer = writer};
+    mapping map = {.out = writer->out};
     bool is_mesh = object->kind == LR_MESH;
     fprintf(writer->out, "  - %s: ", record->name);
     if (is_mesh) {

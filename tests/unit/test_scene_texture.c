@@ -255,7 +255,8 @@ static void expect_path(const char *base, const char *relative, bool allow, cons
 {
     char *path;
     lr_error error = {0};
-    lr_status status = lr_path_resolve(base, relative, allow, &path, &error);
+    lr_load_options options = {.allow_path = allow};
+    lr_status status = lr_path_resolve(base, relative, &options, &path, &error);
     if (expected) {
         if (status)
             fail_msg("%s: %s", relative, error.message);
