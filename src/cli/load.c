@@ -32,6 +32,7 @@ int load_scene(const char *path, const load_values *values, bool quiet, lr_scene
         .max_memory = (uint64_t)values->max_memory,
         .progress = update,
         .user = bar,
+        .files = values->files,
     };
     lr_status status = lr_scene_load(path, &options, scene, &report, &error);
     int code = EXIT_FINE;

@@ -12,6 +12,7 @@ struct progress;
 typedef struct load_values {
     bool allow_path;
     int64_t max_triangles, max_memory; /* 0: not given */
+    lr_file_list *files;               /* of lr_load_options */
 } load_values;
 
 /* The lines of the table; `type` has a member `load` of the above. */

@@ -12,7 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
-static const command *const commands[] = {&command_render,   &command_devices, &command_doctor,
+static const command *const commands[] = {&command_render,   &command_view, &command_devices, &command_doctor,
                                           &command_validate, &command_info,    &command_convert,
                                           &command_schema,   &command_compare, &command_test};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };

@@ -3,7 +3,7 @@
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
-#include "tester/result.h"
+#include "image/image.h"
 
 #include <math.h>
 #include <stddef.h>

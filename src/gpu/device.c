@@ -398,17 +398,24 @@ lr_status lr_device_open_window(const lr_device_desc *desc, const lr_window_syst
     return LR_OK;
 }
 
+void lr_device_end(lr_device *device)
+{
+    lr_vk *vk = &device->vk;
+    if (!device->handle || !vk->vkDestroyDevice)
+        return;
+    vk->vkDeviceWaitIdle(device->handle);
+    vk->vkDestroyFence(device->handle, device->fence, NULL);
+    vk->vkDestroyCommandPool(device->handle, device->command_pool, NULL);
+    vk->vkDestroyDevice(device->handle, NULL);
+    device->handle = VK_NULL_HANDLE;
+}
+
 void lr_device_close(lr_device *device)
 {
     if (!device)
         return;
     lr_vk *vk = &device->vk;
-    if (device->handle && vk->vkDestroyDevice) {
-        vk->vkDeviceWaitIdle(device->handle);
-        vk->vkDestroyFence(device->handle, device->fence, NULL);
-        vk->vkDestroyCommandPool(device->handle, device->command_pool, NULL);
-        vk->vkDestroyDevice(device->handle, NULL);
-    }
+    lr_device_end(device);
     if (device->messenger)
         vk->vkDestroyDebugUtilsMessengerEXT(device->instance, device->messenger, NULL);
     if (device->instance && vk->vkDestroyInstance)

@@ -42,6 +42,10 @@ struct lr_device {
 lr_status lr_device_open_window(const lr_device_desc *desc, const lr_window_system *window,
                                 lr_device **device, lr_error *error);
 
+/* The first half of lr_device_close, after which the device can only be asked for the validation
+ * messages: those about what was not destroyed are then among them. */
+void lr_device_end(lr_device *device);
+
 /* Seconds on a clock that only goes forward. */
 double lr_now(void);
 

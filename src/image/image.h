@@ -5,6 +5,12 @@
 
 #include "base/status.h"
 
+/* What pictures say about where they come from, in lr_encoding's texts. */
+#define LR_STAMP_SOFTWARE "Software"
+#define LR_STAMP_SCENE "lavaray.scene"
+#define LR_STAMP_SETTINGS "lavaray.settings"
+#define LR_STAMP_PIXELS "lavaray.pixels"
+
 /* A transfer curve as an integer threshold table: a linear value encodes to the number of
  * thresholds that it reaches. Built from + - * / alone, so it is the same on every machine. */
 typedef struct lr_curve {

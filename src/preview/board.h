@@ -6,6 +6,7 @@
 
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdio.h>
 
 #include "preview/session.h"
 
@@ -51,12 +52,22 @@ typedef struct lr_board {
     lr_picture taken; /* a screenshot that waits for the loader to write it */
     bool lost;        /* the renderer has no session any more: the device failed */
     lr_error failure; /* why */
+    FILE *events;     /* a log for tests, or NULL; see lr_board_log */
+    double start;     /* of its clock */
+    uint32_t validation_messages; /* of all devices that were closed, and the first of them */
+    char validation[1024];
     void (*notify_loader)(void *loader);
     void *loader;
 } lr_board;
 
 lr_status lr_board_init(lr_board *board, lr_error *error);
 void lr_board_destroy(lr_board *board);
+
+/* Destroys a session, which may be NULL, and keeps what the validation layer had to say. */
+void lr_board_end_session(lr_board *board, lr_session *session);
+
+/* One line with the seconds since the start in front. Any thread, with or without the lock. */
+void lr_board_log(lr_board *board, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 static inline void lr_board_lock(lr_board *board)
 {

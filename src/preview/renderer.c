@@ -150,6 +150,10 @@ static lr_status show(lr_renderer *r, lr_error *error)
         return LR_OK;
     lr_status status = lr_session_show(s, &look, &shown, error);
     if (shown) {
+        const lr_progressive *p = s->progressive;
+        lr_board_log(r->board, "shown %llu step %u done %.4f size %ux%u%s",
+                     (unsigned long long)r->started, p->sweep.step, lr_progressive_done(p),
+                     p->settings.width, p->settings.height, p->finished ? " finished" : "");
         r->show = false;
         r->last_shown = now;
     } else if (s->progressive->finished) {
@@ -209,7 +213,7 @@ static lr_status serve(lr_renderer *r, lr_error *error)
 /* Without a session there is nothing to do until the loader brings another. */
 static void give_up_session(lr_renderer *r, const lr_error *error)
 {
-    lr_session_destroy(r->session);
+    lr_board_end_session(r->board, r->session);
     r->session = NULL;
     lr_board_lock(r->board);
     r->board->lost = true;
@@ -225,12 +229,12 @@ static void *run(void *user)
     while (take_news(r, &old)) {
         if (old)
             lr_session_leave_window(old);
-        lr_session_destroy(old);
+        lr_board_end_session(r->board, old);
         lr_error error = {0};
         if (visible(r) && serve(r, &error))
             give_up_session(r, &error);
     }
-    lr_session_destroy(r->session);
+    lr_board_end_session(r->board, r->session);
     free(r->sheet.pixels);
     return NULL;
 }

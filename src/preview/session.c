@@ -46,7 +46,7 @@ lr_status lr_session_create(lr_shared_scene *shared, const lr_device_desc *desc,
     if (!status)
         status = lr_display_create(s->device, &s->display, error);
     if (status) {
-        lr_session_destroy(s);
+        lr_session_destroy(s, NULL, 0);
         *session = NULL;
     }
     return status;
@@ -57,17 +57,23 @@ void lr_session_leave_window(lr_session *session)
     lr_swapchain_destroy(session->device, &session->swapchain);
 }
 
-void lr_session_destroy(lr_session *session)
+uint32_t lr_session_destroy(lr_session *session, char *text, size_t size)
 {
+    uint32_t messages = 0;
     if (!session)
-        return;
+        return 0;
     if (session->device)
         lr_session_leave_window(session);
     lr_display_destroy(&session->display);
     lr_progressive_destroy(session->progressive);
+    if (session->device) {
+        lr_device_end(session->device);
+        messages = lr_device_validation_messages(session->device, text, size);
+    }
     lr_device_close(session->device);
     lr_shared_scene_give_back(session->shared);
     free(session);
+    return messages;
 }
 
 lr_status lr_session_show(lr_session *session, const lr_look *look, bool *shown, lr_error *error)

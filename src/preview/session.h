@@ -33,7 +33,10 @@ typedef struct lr_session {
 lr_status lr_session_create(lr_shared_scene *shared, const lr_device_desc *desc,
                             const lr_window_system *window, const lr_settings *settings,
                             lr_session **session, lr_error *error);
-void lr_session_destroy(lr_session *session);
+
+/* Returns how many messages the validation layer had, and the first of them; see
+ * lr_device_validation_messages. */
+uint32_t lr_session_destroy(lr_session *session, char *text, size_t size);
 
 /* Gives up the window to another session. */
 void lr_session_leave_window(lr_session *session);

@@ -154,7 +154,7 @@ static void on_wheel(GLFWwindow *handle, double x, double y)
     w->handler.wheel(w->handler.user, w->x, w->y, y);
 }
 
-static lr_status start_glfw(lr_error *error)
+lr_status lr_window_system_open(lr_error *error)
 {
     const char *why = NULL;
     glfwInitHint(GLFW_JOYSTICK_HAT_BUTTONS, GLFW_FALSE);
@@ -164,6 +164,11 @@ static lr_status start_glfw(lr_error *error)
     return lr_fail(error, LR_ERROR_DEVICE,
                    "no display to open a window on (%s); lavaray render SCENE -o FILE.png needs none",
                    why ? why : "GLFW does not say why");
+}
+
+void lr_window_system_close(void)
+{
+    glfwTerminate();
 }
 
 /* The largest size of these proportions that the screen has room for. */
@@ -189,16 +194,11 @@ lr_status lr_window_create(lr_window *window, const char *title, uint32_t width,
     lr_window *w = window;
     lr_window_handler handler = w->handler;
     *w = (lr_window){.handler = handler, .scale = 1};
-    lr_status status = start_glfw(error);
-    if (status)
-        return status;
     w->system.extensions = glfwGetRequiredInstanceExtensions(&w->system.extension_count);
-    if (!w->system.extensions) {
-        glfwTerminate();
+    if (!w->system.extensions)
         return lr_fail(error, LR_ERROR_DEVICE,
                        "no Vulkan driver can show pictures on this display; install the package "
                        "mesa-vulkan-drivers, or use lavaray render SCENE -o FILE.png");
-    }
     fit_screen(&width, &height);
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     glfwWindowHintString(GLFW_X11_CLASS_NAME, "lavaray");
@@ -207,10 +207,8 @@ lr_status lr_window_create(lr_window *window, const char *title, uint32_t width,
     if (!w->handle) {
         const char *why = NULL;
         glfwGetError(&why);
-        status = lr_fail(error, LR_ERROR_DEVICE, "the window cannot be opened (%s)",
-                         why ? why : "GLFW does not say why");
-        glfwTerminate();
-        return status;
+        return lr_fail(error, LR_ERROR_DEVICE, "the window cannot be opened (%s)",
+                       why ? why : "GLFW does not say why");
     }
     w->system.can_present = can_present;
     w->system.create_surface = create_surface;
@@ -234,7 +232,6 @@ void lr_window_destroy(lr_window *window)
     if (!window->handle)
         return;
     glfwDestroyWindow(window->handle);
-    glfwTerminate();
     window->handle = NULL;
 }
 

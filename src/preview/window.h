@@ -48,7 +48,11 @@ typedef struct lr_window {
     int saved[4]; /* place and size before it was full screen */
 } lr_window;
 
-/* LR_ERROR_DEVICE where there is no display, with the reason. Only one window at a time. */
+/* First of all, and last. LR_ERROR_DEVICE where there is no display, with the reason. */
+lr_status lr_window_system_open(lr_error *error);
+void lr_window_system_close(void);
+
+/* Only one window at a time. */
 lr_status lr_window_create(lr_window *window, const char *title, uint32_t width, uint32_t height,
                            lr_error *error);
 void lr_window_destroy(lr_window *window);
@@ -65,7 +69,7 @@ void lr_window_set_title(lr_window *window, const char *title);
 void lr_window_toggle_full_screen(lr_window *window);
 bool lr_window_is_full_screen(const lr_window *window);
 
-/* Metres a second or none: which of the keys W A S D Q E are down, as -1, 0 or 1 to the right, up and
+/* Which of the keys W A S D Q E are down, with the right button: -1, 0 or 1 to the right, up and
  * forward. */
 void lr_window_flight(const lr_window *window, double direction[3]);
 

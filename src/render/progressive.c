@@ -14,6 +14,8 @@
 #define SOFTWARE_SECONDS_PER_RAY 2e-6
 #define GPU_SECONDS_PER_RAY 2e-8
 
+#define TELLING_RAYS 2000.0
+
 #define BLOCK 8u /* rays go in blocks of 8 x 8 pixels: neighbours meet the same objects */
 
 lr_status lr_progressive_create(lr_device *device, const lr_scene *scene,
@@ -169,6 +171,14 @@ static lr_camera_rays next_rays(lr_progressive *p, uint32_t rays)
     return next;
 }
 
+/* Quick to become careful, slow to become bold, and little by steps that are too small to tell. */
+static void learn_speed(lr_progressive *p, double rays, double seconds)
+{
+    double each = seconds / rays;
+    double weight = (each > p->seconds_per_ray ? 0.6 : 0.3) * rays / (rays + TELLING_RAYS);
+    p->seconds_per_ray += (each - p->seconds_per_ray) * weight;
+}
+
 lr_status lr_progressive_step(lr_progressive *progressive, double seconds, lr_pass_done go_on,
                               void *user, lr_error *error)
 {
@@ -186,9 +196,7 @@ lr_status lr_progressive_step(lr_progressive *progressive, double seconds, lr_pa
         lr_wavefront_discard(&p->wavefront);
         return status;
     }
-    double each = (lr_now() - start) / ((double)rays.columns * rays.rows * rays.samples);
-    /* Quick to become careful, slow to become bold. */
-    p->seconds_per_ray += (each - p->seconds_per_ray) * (each > p->seconds_per_ray ? 0.7 : 0.3);
+    learn_speed(p, (double)rays.columns * rays.rows * rays.samples, lr_now() - start);
     while (!p->finished && (columns_of(p) == 0 || p->row >= rows_of(p)))
         p->finished = !next_sweep(p, most);
     return LR_OK;

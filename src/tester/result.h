@@ -27,12 +27,6 @@ typedef struct lr_stamp {
     char pixels[80]; /* SHA-256 of the linear pixels; see lr_picture_hash */
 } lr_stamp;
 
-/* The keys that the picture's file holds them under. */
-#define LR_STAMP_SOFTWARE "Software"
-#define LR_STAMP_SCENE "lavaray.scene"
-#define LR_STAMP_SETTINGS "lavaray.settings"
-#define LR_STAMP_PIXELS "lavaray.pixels"
-
 /* Texts are NULL when there is nothing to say. */
 typedef struct lr_case_result {
     const lr_case *item;

@@ -62,6 +62,7 @@ only() {
 }
 only vulkan/ gpu
 only GLFW/ preview
+only cairo/ preview
 only libfyaml scene
 only png image
 only stb image

@@ -40,12 +40,7 @@ static inline lr_device *open_device(void)
  */
 static inline void close_device(lr_device *device)
 {
-    lr_vk *vk = &device->vk;
-    vk->vkDeviceWaitIdle(device->handle);
-    vk->vkDestroyFence(device->handle, device->fence, NULL);
-    vk->vkDestroyCommandPool(device->handle, device->command_pool, NULL);
-    vk->vkDestroyDevice(device->handle, NULL);
-    device->handle = VK_NULL_HANDLE;
+    lr_device_end(device);
     char text[1024] = "";
     uint32_t messages = lr_device_validation_messages(device, text, sizeof text);
     lr_device_close(device);

@@ -1,0 +1,204 @@
+#include "cli/cli.h"
+#include "cli/load.h"
+#include "cli/progress.h"
+#include "preview/preview.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+
+typedef struct values {
+    const char *camera, *device, *screenshot, *events;
+    option_size size;
+    int64_t samples, depth, seed; /* -1: not given */
+    double exposure;              /* NaN: not given */
+    load_values load;
+    bool quiet;
+} values;
+
+#define AT(member) .offset = offsetof(values, member)
+
+static const option options[] = {
+    {.name = "size",
+     .kind = OPTION_SIZE,
+     AT(size),
+     .value = "WxH",
+     .min = 1,
+     .max = 16384,
+     .help = "width and height of the window in pixels; default: the\nscene's, if the screen is as "
+             "large",
+     .also = "width|height|resolution|res"},
+    {.name = "spp",
+     .kind = OPTION_INTEGER,
+     AT(samples),
+     .value = "N",
+     .min = 1,
+     .max = 65536,
+     .help = "samples per pixel in the end, 1 to 65536; default: the\nscene's",
+     .also = "samples"},
+    {.name = "depth",
+     .kind = OPTION_INTEGER,
+     AT(depth),
+     .value = "N",
+     .min = 0,
+     .max = 64,
+     .help = "bounces, 0 to 64; default: the scene's",
+     .also = "bounces|max-depth"},
+    {.name = "seed",
+     .kind = OPTION_INTEGER,
+     AT(seed),
+     .value = "N",
+     .min = 0,
+     .max = UINT32_MAX,
+     .help = "of the random numbers, 0 to 4294967295;\ndefault: the scene's"},
+    {.name = "exposure",
+     .kind = OPTION_REAL,
+     AT(exposure),
+     .value = "EV",
+     .min = -64,
+     .max = 64,
+     .help = "stops, -64 to 64; default: the scene's"},
+    {.name = "camera",
+     .kind = OPTION_TEXT,
+     AT(camera),
+     .value = "NAME",
+     .help = "of the scene's cameras; default: the first"},
+    {.name = "device",
+     .kind = OPTION_TEXT,
+     AT(device),
+     .value = "WHICH",
+     .help = "auto (default: a GPU before a CPU), cpu, gpu, or the\n"
+             "index or part of the name that lavaray devices shows",
+     .also = "gpu|cpu"},
+    {.name = "screenshot",
+     .kind = OPTION_TEXT,
+     AT(screenshot),
+     .value = "FILE",
+     .help = "the name of screenshots, .png, .ppm, .pfm or .exr;\n"
+             "FILE-1, FILE-2 ... follow, none is replaced;\n"
+             "default: as the scene is called, .png, here",
+     .also = "output|o"},
+    LOAD_OPTIONS(values),
+    {.name = "quiet",
+     .letter = 'q',
+     .kind = OPTION_FLAG,
+     AT(quiet),
+     .help = "no progress and no notes: only warnings and errors",
+     .also = "silent"},
+    {.name = "events",
+     .kind = OPTION_TEXT,
+     AT(events),
+     .value = "FILE",
+     .help = "log what is shown when",
+     .for_tests = true},
+};
+
+static bool stop_wanted(void)
+{
+    return interrupted();
+}
+
+static void print_line(const char *text)
+{
+    fputs(text, stdout);
+    fflush(stdout);
+}
+
+static lr_preview_options make_options(const values *v, const char *path)
+{
+    return (lr_preview_options){
+        .path = path,
+        .load = {.allow_path = v->load.allow_path,
+                 .max_triangles = (uint64_t)v->load.max_triangles,
+                 .max_memory = (uint64_t)v->load.max_memory},
+        .device = {.select = v->device, .validation = validation_wanted()},
+        .render = {.width = v->size.width,
+                   .height = v->size.height,
+                   .samples = v->samples >= 0 ? (uint32_t)v->samples : 0,
+                   .depth = v->depth >= 0 ? (int32_t)v->depth : 0,
+                   .has_depth = v->depth >= 0,
+                   .seed = v->seed >= 0 ? (uint32_t)v->seed : 0,
+                   .has_seed = v->seed >= 0,
+                   .camera = v->camera},
+        .has_exposure = !isnan(v->exposure),
+        .exposure = v->exposure,
+        .screenshot = v->screenshot,
+        .interrupted = stop_wanted,
+        .events = v->events ? fopen(v->events, "we") : NULL,
+        .print = print_line,
+    };
+}
+
+static int check_values(const command *self, const values *v, const char *path)
+{
+    lr_format format;
+    if (path[0] == '-' && path[1] == '\0')
+        return wrong_usage(self, "view follows a file, and standard input is none");
+    if (v->screenshot && !lr_format_from_path(v->screenshot, &format))
+        return wrong_usage(self, "the name of screenshots must end in .png, .ppm, .pfm or .exr");
+    return EXIT_FINE;
+}
+
+static int show(values *v, const char *path)
+{
+    lr_preview_options preview = make_options(v, path);
+    lr_scene *scene = NULL;
+    lr_file_list files = {0};
+    v->load.files = &files;
+    lr_error error = {0};
+    progress p;
+    progress_start(&p, v->quiet);
+    progress_phase(&p, "reading scene");
+    int code = load_scene(path, &v->load, v->quiet, &scene, &p);
+    progress_clear(&p);
+    if (code == EXIT_FINE && interrupted()) {
+        lr_scene_destroy(scene);
+        code = EXIT_INTERRUPTED;
+    } else if (code == EXIT_FINE) {
+        lr_status status = lr_preview_run(scene, &files, &preview, &error);
+        error.status = status;
+        if (status != LR_OK)
+            code = report_failure(&error);
+    }
+    if (preview.events)
+        fclose(preview.events);
+    lr_file_list_free(&files);
+    return code;
+}
+
+static int run(const command *self, int argc, char **argv)
+{
+    values v = {.samples = -1, .depth = -1, .seed = -1, .exposure = NAN};
+    int operands;
+    parse_result parsed = options_parse(self, argc, argv, &v, &operands);
+    if (parsed != PARSE_OK)
+        return (int)parsed;
+    int code = check_values(self, &v, argv[0]);
+    if (code != EXIT_FINE)
+        return code;
+    lr_error error = {0};
+    lr_status status = lr_preview_open(&error);
+    if (status != LR_OK)
+        return report_failure(&error);
+    catch_interrupts();
+    code = show(&v, argv[0]);
+    lr_preview_close();
+    return code;
+}
+
+const command command_view = {
+    .name = "view",
+    .operands = "SCENE",
+    .summary = "show a scene in a window that follows its file",
+    .details = "Opens a window that shows SCENE, coarse at once and then finer and finer, until\n"
+               "it is the picture that lavaray render makes. The camera moves with the mouse,\n"
+               "and the picture follows SCENE and the files that it names as they are edited.\n"
+               "h in the window shows all keys.",
+    .examples = "  lavaray view scenes/showcase.yaml\n"
+                "  lavaray view model.glb --size 1280x720 --spp 64 --device gpu",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run,
+};

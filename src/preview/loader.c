@@ -1,0 +1,431 @@
+#include "preview/loader.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+#include "preview/window.h"
+#include "scene/save_camera.h"
+
+/* A device that fails so often without a picture in between is given up. */
+#define FAILURES_MAX 3
+
+#define SCREENSHOTS_MAX 100000
+
+void lr_loader_wake(lr_loader *loader)
+{
+    uint64_t one = 1;
+    ssize_t written = write(loader->wake, &one, sizeof one);
+    (void)written; /* it fails only when the thread is going to wake anyway */
+}
+
+static void wake_from_board(void *loader)
+{
+    lr_loader_wake(loader);
+}
+
+static void say(lr_loader *l, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static void say(lr_loader *l, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    lr_board_lock(l->board);
+    vsnprintf(l->news.text, sizeof l->news.text, format, arguments);
+    l->news.message++;
+    lr_board_unlock(l->board);
+    va_end(arguments);
+    lr_window_wake();
+}
+
+static void set_busy(lr_loader *l, bool busy)
+{
+    lr_board_lock(l->board);
+    l->news.busy = busy;
+    lr_board_unlock(l->board);
+    lr_window_wake();
+}
+
+/* Takes the report over. */
+static void set_errors(lr_loader *l, char *report)
+{
+    lr_board_lock(l->board);
+    bool changed = report || l->news.errors;
+    free(l->news.errors);
+    l->news.errors = report;
+    l->news.report += changed;
+    lr_board_unlock(l->board);
+    lr_window_wake();
+}
+
+static void free_cameras(lr_news *news)
+{
+    for (uint32_t i = 0; i < news->camera_count; i++)
+        free(news->cameras[i].name);
+    free(news->cameras);
+    news->cameras = NULL;
+    news->camera_count = 0;
+}
+
+/* Tells the window about a scene. */
+static lr_status announce(lr_loader *l, const lr_scene *scene, lr_error *error)
+{
+    lr_scene_facts facts;
+    lr_scene_get_facts(scene, &facts);
+    lr_camera *cameras = lr_alloc(scene->camera_count, sizeof *cameras);
+    for (uint32_t i = 0; cameras && i < scene->camera_count; i++) {
+        cameras[i] = scene->cameras[i];
+        const char *name = scene->cameras[i].name;
+        cameras[i].name = name ? lr_string_copy(name, strlen(name)) : NULL;
+    }
+    if (!cameras)
+        return lr_fail(error, LR_ERROR_MEMORY, "out of memory");
+    double square = 0;
+    for (int i = 0; i < 3 && facts.bounded; i++)
+        square += (facts.max[i] - facts.min[i]) * (facts.max[i] - facts.min[i]);
+    lr_board_lock(l->board);
+    free_cameras(&l->news);
+    l->news.cameras = cameras;
+    l->news.camera_count = scene->camera_count;
+    l->news.samples = scene->image.samples;
+    l->news.depth = scene->image.depth;
+    l->news.seed = scene->image.seed;
+    l->news.exposure = scene->image.exposure;
+    l->news.size = lr_vec3_length((lr_vec3){facts.bounded ? facts.max[0] - facts.min[0] : 0,
+                                            facts.bounded ? facts.max[1] - facts.min[1] : 0,
+                                            facts.bounded ? facts.max[2] - facts.min[2] : 0});
+    l->news.scene++;
+    lr_board_unlock(l->board);
+    memcpy(l->sha256, scene->sha256, sizeof l->sha256);
+    lr_window_wake();
+    return LR_OK;
+}
+
+static bool quitting(lr_loader *l)
+{
+    lr_board_lock(l->board);
+    bool quit = l->jobs.quit;
+    lr_board_unlock(l->board);
+    return quit;
+}
+
+static bool keep_loading(void *user, const char *what, double fraction)
+{
+    (void)what, (void)fraction;
+    return !quitting(user);
+}
+
+/* Reads the scene again. A broken file is told of and changes nothing else. */
+static void load(lr_loader *l)
+{
+    lr_scene *scene;
+    char *report = NULL;
+    lr_error error = {0};
+    lr_file_list files = {0};
+    lr_load_options options = l->load;
+    options.files = &files;
+    options.progress = keep_loading;
+    options.user = l;
+    lr_status status = lr_scene_load(l->path, &options, &scene, &report, &error);
+    if (!status) {
+        lr_shared_scene *shared = lr_shared_scene_create(scene);
+        if (shared) {
+            lr_shared_scene_give_back(l->scene);
+            l->scene = shared;
+            status = announce(l, scene, &error);
+        } else {
+            status = lr_fail(&error, LR_ERROR_MEMORY, "out of memory");
+        }
+    }
+    if (status && !report)
+        report = lr_string_copy(error.message, strlen(error.message));
+    lr_board_log(l->board, "scene %s", status ? "broken" : "read");
+    if (status != LR_ERROR_INTERRUPTED)
+        set_errors(l, report);
+    else
+        free(report);
+    if (files.count > 0 && !lr_follow_files(l->follow, &files))
+        say(l, "out of memory to follow the scene's files");
+    lr_file_list_free(&files);
+    lr_board_lock(l->board);
+    l->jobs.build |= !status;
+    lr_board_unlock(l->board);
+}
+
+/* Makes a session of the scene and hands it to the renderer. */
+static void build(lr_loader *l)
+{
+    lr_board *b = l->board;
+    lr_session *session;
+    lr_error error = {0};
+    lr_board_lock(b);
+    lr_camera camera = b->wish.camera;
+    lr_settings settings = {
+        .width = b->wish.width ? b->wish.width : 1,
+        .height = b->wish.height ? b->wish.height : 1,
+        .samples = b->wish.samples,
+        .depth = b->wish.depth,
+        .seed = b->wish.seed,
+        .camera = &camera,
+    };
+    lr_device_desc device = l->device;
+    lr_board_unlock(b);
+    set_busy(l, true);
+    lr_status status =
+        lr_session_create(l->scene, &device, l->window, &settings, &session, &error);
+    lr_session *unseen = NULL;
+    lr_board_lock(b);
+    bool first = b->shown.picture == 0;
+    if (!status) {
+        unseen = b->next;
+        b->next = session;
+        b->lost = false;
+        atomic_store(&b->hurry, true);
+        pthread_cond_signal(&b->wake);
+    } else if (first || b->lost) {
+        l->news.fatal = true;
+        l->news.failure = error;
+    }
+    l->news.busy = false;
+    lr_board_unlock(b);
+    lr_board_log(b, "session %s", status ? "failed" : "ready");
+    lr_board_end_session(b, unseen);
+    if (status)
+        say(l, "%s", error.message);
+    lr_window_wake();
+}
+
+/* The renderer's device has failed: a new one may work, unless it fails all the time. */
+static void replace_lost(lr_loader *l)
+{
+    lr_board *b = l->board;
+    lr_board_lock(b);
+    lr_error failure = b->failure;
+    bool again = ++l->failures < FAILURES_MAX;
+    if (!again) {
+        l->news.fatal = true;
+        l->news.failure = failure;
+    }
+    lr_board_unlock(b);
+    if (again)
+        build(l);
+    lr_window_wake();
+}
+
+/* Creates an empty file of a name that is free. */
+static bool reserve_name(const char *stem, const char *ending, char *name, size_t size)
+{
+    for (int i = 0; i < SCREENSHOTS_MAX; i++) {
+        int length = i == 0 ? snprintf(name, size, "%s%s", stem, ending)
+                            : snprintf(name, size, "%s-%d%s", stem, i, ending);
+        if (length < 0 || (size_t)length >= size)
+            return false;
+        int file = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file >= 0) {
+            close(file);
+            return true;
+        }
+        if (errno != EEXIST)
+            return false;
+    }
+    return false;
+}
+
+/* Writes a screenshot beside where the program runs, or where it was asked to. */
+static void write_screenshot(lr_loader *l, const lr_picture *picture, double exposure)
+{
+    char stem[4000], name[4096];
+    const char *path = l->screenshot ? l->screenshot : l->path;
+    const char *slash = strrchr(path, '/');
+    const char *base = l->screenshot ? path : slash ? slash + 1 : path;
+    const char *dot = strrchr(base, '.');
+    bool has_dot = dot && dot > base && !strchr(dot, '/');
+    lr_encoding encoding = {.format = LR_FORMAT_PNG, .exposure = (float)exposure};
+    const char *ending = ".png";
+    if (l->screenshot && has_dot && lr_format_from_path(path, &encoding.format))
+        ending = dot;
+    snprintf(stem, sizeof stem, "%.*s", (int)(has_dot ? (size_t)(dot - base) : strlen(base)), base);
+    if (!reserve_name(stem, ending, name, sizeof name)) {
+        say(l, "%s%s: %s", stem, ending, strerror(errno));
+        return;
+    }
+    char hash[65];
+    lr_picture_hash(picture, hash);
+    const lr_text texts[] = {
+        {LR_STAMP_SOFTWARE, "lavaray " LR_VERSION},
+        {LR_STAMP_SCENE, l->sha256},
+        {LR_STAMP_PIXELS, hash},
+    };
+    bool carries_texts = encoding.format == LR_FORMAT_PNG || encoding.format == LR_FORMAT_EXR;
+    encoding.texts = carries_texts ? texts : NULL;
+    encoding.text_count = carries_texts ? sizeof texts / sizeof *texts : 0;
+    lr_error error = {0};
+    if (lr_picture_write(picture, name, &encoding, &error)) {
+        unlink(name);
+        say(l, "%s", error.message);
+    } else {
+        say(l, "wrote %s", name);
+    }
+}
+
+static void save_camera(lr_loader *l, uint32_t index, const lr_camera *camera)
+{
+    lr_error error = {0};
+    if (lr_scene_save_camera(l->path, index, camera, l->sha256, &error)) {
+        say(l, "%s", error.message);
+        return;
+    }
+    lr_follow_forget_own_write(l->follow, l->path);
+    say(l, "saved the camera in %s", l->path);
+}
+
+/* Chooses the next usable device in the order of the list, after the one in use. */
+static void next_device(lr_loader *l)
+{
+    lr_device_info *devices;
+    uint32_t count, current = 0, usable = 0;
+    lr_error error = {0};
+    if (lr_device_list(&devices, &count, &error)) {
+        say(l, "%s", error.message);
+        return;
+    }
+    lr_board_lock(l->board);
+    for (uint32_t i = 0; i < count; i++) {
+        current = strcmp(devices[i].name, l->board->shown.device) ? current : i;
+        usable += devices[i].usable;
+    }
+    uint32_t next = current;
+    for (uint32_t i = 1; i < count && next == current; i++)
+        if (devices[(current + i) % count].usable)
+            next = (current + i) % count;
+    if (usable > 1) {
+        snprintf(l->device_name, sizeof l->device_name, "%u", (unsigned)next);
+        l->device.select = l->device_name;
+        l->jobs.build = true;
+    }
+    lr_board_unlock(l->board);
+    if (usable > 1)
+        say(l, "device %s", devices[next].name);
+    else
+        say(l, "there is no other device than %s", devices[current].name);
+    free(devices);
+}
+
+/* Does what there is to do, one thing after the other. */
+static bool work(lr_loader *l)
+{
+    lr_board *b = l->board;
+    lr_board_lock(b);
+    lr_jobs jobs = l->jobs;
+    bool quit = jobs.quit;
+    l->jobs = (lr_jobs){.quit = quit};
+    lr_picture taken = b->taken;
+    double exposure = b->wish.exposure;
+    bool lost = b->lost;
+    b->taken = (lr_picture){0};
+    if (b->shown.picture > 0 && !lost)
+        l->failures = 0;
+    lr_board_unlock(b);
+    if (taken.pixels)
+        write_screenshot(l, &taken, exposure);
+    lr_picture_free(&taken);
+    if (quit)
+        return false;
+    if (jobs.save)
+        save_camera(l, jobs.save_index, &jobs.save_camera);
+    if (jobs.next_device)
+        next_device(l);
+    if (jobs.load)
+        load(l);
+    lr_board_lock(b);
+    bool wants_build = jobs.build || l->jobs.build;
+    l->jobs.build = false;
+    lr_board_unlock(b);
+    if (lost && !wants_build)
+        replace_lost(l);
+    else if (wants_build)
+        build(l);
+    return true;
+}
+
+static int milliseconds(double seconds)
+{
+    return seconds < 0 ? -1 : seconds > 60 ? 60000 : (int)(1000 * seconds) + 1;
+}
+
+static void wait_for_work(lr_loader *l)
+{
+    struct pollfd files[2] = {{.fd = l->wake, .events = POLLIN},
+                              {.fd = lr_follow_descriptor(l->follow), .events = POLLIN}};
+    const lr_jobs *jobs = &l->jobs;
+    lr_board_lock(l->board);
+    bool waiting = jobs->quit || jobs->load || jobs->build || jobs->save || jobs->next_device;
+    lr_board_unlock(l->board);
+    if (!waiting)
+        poll(files, 2, milliseconds(lr_follow_wait(l->follow, lr_now())));
+    uint64_t count;
+    if (files[0].revents && read(l->wake, &count, sizeof count) < 0)
+        return;
+    if (!lr_follow_changed(l->follow, lr_now()))
+        return;
+    lr_board_lock(l->board);
+    l->jobs.load = true;
+    lr_board_unlock(l->board);
+}
+
+static void *run(void *user)
+{
+    lr_loader *l = user;
+    while (work(l))
+        wait_for_work(l);
+    return NULL;
+}
+
+static void release(lr_loader *l)
+{
+    lr_follow_destroy(l->follow);
+    lr_shared_scene_give_back(l->scene);
+    free_cameras(&l->news);
+    free(l->news.errors);
+    if (l->wake >= 0)
+        close(l->wake);
+}
+
+lr_status lr_loader_start(lr_loader *loader, lr_scene *scene, const lr_file_list *files,
+                          lr_error *error)
+{
+    lr_loader *l = loader;
+    l->scene = lr_shared_scene_create(scene);
+    l->follow = lr_follow_create();
+    l->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    lr_status status = LR_OK;
+    if (!l->scene || !l->follow || l->wake < 0 || !lr_follow_files(l->follow, files))
+        status = lr_fail(error, LR_ERROR_MEMORY, "out of memory to follow the scene's files");
+    if (!status)
+        status = announce(l, scene, error);
+    l->jobs.build = true;
+    l->board->loader = l;
+    l->board->notify_loader = wake_from_board;
+    if (!status && pthread_create(&l->thread, NULL, run, l))
+        status = lr_fail(error, LR_ERROR_MEMORY, "no thread for the loader");
+    if (status)
+        release(l);
+    return status;
+}
+
+void lr_loader_stop(lr_loader *loader)
+{
+    lr_board_lock(loader->board);
+    loader->jobs.quit = true;
+    lr_board_unlock(loader->board);
+    lr_loader_wake(loader);
+    pthread_join(loader->thread, NULL);
+    release(loader);
+}
