@@ -497,9 +497,13 @@ LR_ROWS(gpu_counters, 7)
 #define LR_COARSE_MAX 32 /* pixels between those that are traced first, at most */
 
 /* How film sums become shades; two of them, for pixels of display.samples and of other numbers of
- * samples. A sum has as many shades as steps that it reaches. */
+ * samples. A sum has as many shades as steps that it reaches; where to begin counting is told by its
+ * leading bits (sum_bucket in display.comp). */
+#define LR_BUCKET_BITS 8 /* behind the leading one */
+#define LR_BUCKETS 14592
 struct gpu_shades {
-    uint steps_low[LR_SHADES]; /* in film steps; the last one is unused */
+    uint starts[LR_BUCKETS];      /* the shade of the least sum in the bucket */
+    uint steps_low[LR_SHADES]; /* in film steps; the last is beyond all sums */
     uint steps_high[LR_SHADES];
     uint overflow; /* the shade of sums beyond the film's range */
     uint unused0;
@@ -514,6 +518,7 @@ struct gpu_display {
     uint blue_first; /* 1: of a pixel's four bytes the first is blue, 0: red */
     uint overlay;    /* 1: there is one: pixels with premultiplied alpha, blue in the lowest byte */
     uint palette;    /* 1: the shade of red is an index of the palette */
+    uint coarse;     /* pixels between those of the film that have samples, at most */
 };
 
 /* ---- The start-up self-test ---- */

@@ -1,6 +1,6 @@
 #include "preview/renderer.h"
 
-#include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -9,8 +9,10 @@
 
 #define STEP_SECONDS 0.02
 
-/* A picture that only becomes finer is shown so often, and the window told so often. */
+/* A picture that only becomes finer is shown so often, or more seldom where showing takes more than a
+ * tenth of the time; and the window is told so often. */
 #define SHOW_SECONDS 0.1
+#define SHOW_SHARE 0.1
 #define TELL_SECONDS 0.25
 
 /* Until a window that has no image free, or no area, is asked again. */
@@ -155,7 +157,8 @@ static lr_status show(lr_renderer *r, lr_error *error)
                      (unsigned long long)r->started, p->sweep.step, lr_progressive_done(p),
                      p->settings.width, p->settings.height, p->finished ? " finished" : "");
         r->show = false;
-        r->last_shown = now;
+        r->last_shown = lr_now();
+        r->show_seconds = r->last_shown - now;
     } else if (s->progressive->finished) {
         wait_a_little();
     }
@@ -199,7 +202,8 @@ static lr_status serve(lr_renderer *r, lr_error *error)
             return LR_OK;
         }
         bool first = p->shown && !had_picture;
-        r->show = r->show || first || p->finished || lr_now() - r->last_shown > SHOW_SECONDS;
+        double due = r->last_shown + fmax(SHOW_SECONDS, r->show_seconds / SHOW_SHARE);
+        r->show = r->show || first || p->finished || lr_now() > due;
     }
     if (!status)
         status = show(r, error);

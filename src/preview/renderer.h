@@ -14,6 +14,7 @@ typedef struct lr_renderer {
     lr_sheet sheet;          /* waiting until the picture has its size */
     uint64_t started;        /* wish.picture that the session works on; 0: none */
     double last_shown, told; /* when, in seconds */
+    double show_seconds;     /* that showing it takes */
     bool told_done;          /* the window knows that the picture is finished */
     bool show;               /* there is something new to show */
 } lr_renderer;

@@ -26,6 +26,23 @@ static uint32_t palette_color(uint32_t index)
     return color;
 }
 
+/* Drivers compile a kernel when it first runs: here on one black pixel. */
+static lr_status warm_up(lr_display *d, lr_error *error)
+{
+    lr_buffer film = {0};
+    lr_status status = lr_buffer_create(d->device, LR_BUFFER_STORAGE, 4 * LR_FILM_WORDS,
+                                        "the film", &film, error);
+    if (!status)
+        status = lr_commands_begin(d->device, error);
+    if (!status) {
+        lr_commands_zero(d->device, &film, film.size);
+        lr_display_record(d, &film, &(lr_look){0});
+        status = lr_commands_finish(d->device, error);
+    }
+    lr_buffer_destroy(d->device, &film);
+    return status;
+}
+
 lr_status lr_display_create(lr_device *device, lr_display *display, lr_error *error)
 {
     *display = (lr_display){.device = device};
@@ -61,6 +78,8 @@ lr_status lr_display_create(lr_device *device, lr_display *display, lr_error *er
                                                 &display->canvas};
         status = lr_set_create(device, &display->layout, buffers, &display->set, error);
     }
+    if (!status)
+        status = warm_up(display, error);
     if (status)
         lr_display_destroy(display);
     return status;
@@ -144,16 +163,30 @@ static uint64_t find_step(const lr_curve *curve, uint32_t shade, uint32_t sample
     return reached;
 }
 
+/* Sums are in the bucket from this one on: the inverse of sum_bucket in display.comp. */
+static uint64_t bucket_start(uint32_t bucket)
+{
+    const uint32_t size = 1 << LR_BUCKET_BITS;
+    uint32_t by = bucket < 2 * size ? 0 : bucket / size - 1;
+    return (uint64_t)(bucket - by * size) << by;
+}
+
 static void fill_shades(const lr_curve *curve, uint32_t samples, double scale,
                         struct gpu_shades *out)
 {
-    uint64_t step = 0;
-    memset(out, 0, sizeof *out);
+    uint64_t steps[LR_SHADES], step = 0;
     samples = samples ? samples : 1;
-    for (uint32_t shade = 1; shade < LR_SHADES; shade++) {
-        step = find_step(curve, shade, samples, scale, step);
-        out->steps_low[shade - 1] = (uint32_t)step;
-        out->steps_high[shade - 1] = (uint32_t)(step >> 32);
+    for (uint32_t i = 0; i < LR_SHADES; i++) {
+        step = i < LR_SHADES - 1 ? find_step(curve, i + 1, samples, scale, step) : UINT64_MAX;
+        steps[i] = step;
+        out->steps_low[i] = (uint32_t)step;
+        out->steps_high[i] = (uint32_t)(step >> 32);
+    }
+    uint32_t reached = 0;
+    for (uint32_t bucket = 0; bucket < LR_BUCKETS; bucket++) {
+        while (reached < LR_SHADES - 1 && steps[reached] <= bucket_start(bucket))
+            reached++;
+        out->starts[bucket] = reached;
     }
     out->overflow = lr_curve_encode(curve, lr_exposed(lr_film_overflow(samples), scale));
 }
@@ -161,11 +194,14 @@ static void fill_shades(const lr_curve *curve, uint32_t samples, double scale,
 void lr_display_record(lr_display *display, const lr_buffer *film, const lr_look *look)
 {
     lr_display *d = display;
-    struct gpu_shades shades[2];
     double scale = look->false_colors ? 1 : lr_exp2(look->exposure);
     const lr_curve *curve = look->false_colors ? &d->linear : &d->srgb;
-    fill_shades(curve, look->samples, scale, &shades[0]);
-    fill_shades(curve, look->others, scale, &shades[1]);
+    const uint32_t samples[2] = {look->samples, look->others};
+    for (int i = 0; i < 2; i++) {
+        struct gpu_shades shades = {0};
+        fill_shades(curve, samples[i], scale, &shades);
+        lr_commands_write(d->device, &d->shades, i * sizeof shades, &shades, sizeof shades);
+    }
     const lr_buffer *buffers[BIND_COUNT] = {film, &d->shades, &d->palette, &d->overlay, &d->canvas};
     lr_set_write(d->device, &d->layout, buffers, d->set);
     struct gpu_display work = {
@@ -175,11 +211,10 @@ void lr_display_record(lr_display *display, const lr_buffer *film, const lr_look
         .blue_first = look->blue_first,
         .overlay = d->has_overlay,
         .palette = look->false_colors,
+        .coarse = look->coarse,
     };
-    lr_commands_write(d->device, &d->shades, 0, shades, sizeof shades);
     lr_commands_barrier(d->device);
     lr_commands_dispatch(d->device, &d->layout, d->program, d->set, &work,
-                         (d->width + LR_TILE_GROUP - 1) / LR_TILE_GROUP,
-                         (d->height + LR_TILE_GROUP - 1) / LR_TILE_GROUP, 1);
+                         (d->width + LR_GROUP_SIZE - 1) / LR_GROUP_SIZE, d->height, 1);
     lr_commands_barrier(d->device);
 }

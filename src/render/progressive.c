@@ -206,6 +206,7 @@ void lr_progressive_look(const lr_progressive *p, lr_look *look)
 {
     look->samples = p->sweep.first_sample + p->sweep.samples;
     look->others = p->sweep.first_sample > 0 ? p->sweep.first_sample : 1;
+    look->coarse = p->sweep.first_sample > 0 || p->finished ? 1 : p->sweep.step;
 }
 
 double lr_progressive_done(const lr_progressive *p)
