@@ -11,7 +11,7 @@
 lr_status lr_path_resolve(const char *base_file, const char *relative,
                           const lr_load_options *options, char **path, lr_error *error);
 
-/* Adds the path to the options' files, if that is wished for. False when memory is out. */
+/* Adds the file to the options' list, if that is wished for. False when memory is out. */
 bool lr_file_list_add(const lr_load_options *options, const char *path);
 
 #endif
