@@ -65,6 +65,10 @@ typedef struct lr_load_options {
     /* NULL, or where loading adds the files that the scene consists of, as they were looked for:
      * also those that are not there, and also when it fails. */
     lr_file_list *files;
+    /* NULL, or a scene whose meshes and textures are taken instead of being read again, where their
+     * files are still the same. The scenes share them: either may be destroyed first, on any
+     * thread. */
+    const lr_scene *previous;
 } lr_load_options;
 
 /* Reads and checks the scene file at path ("-" is standard input): glTF, OBJ, PLY, STL and NFF by

@@ -60,13 +60,12 @@ done:
     return status;
 }
 
-bool lr_file_list_add(const lr_load_options *options, const char *path)
+bool lr_file_list_put(lr_file_list *list, const char *path, const lr_file_stamp *stamp)
 {
-    lr_file_list *list = options ? options->files : NULL;
-    for (uint32_t i = 0; list && i < list->count; i++)
+    for (uint32_t i = 0; i < list->count; i++)
         if (strcmp(list->files[i].path, path) == 0)
             return true;
-    if (!list || list->count == LR_FILES_MAX)
+    if (list->count == LR_FILES_MAX)
         return true;
     char *copy = lr_string_copy(path, strlen(path));
     if (!copy || !lr_array_reserve((void **)&list->files, list->count, &list->capacity,
@@ -74,8 +73,16 @@ bool lr_file_list_add(const lr_load_options *options, const char *path)
         free(copy);
         return false;
     }
-    list->files[list->count++] = (lr_file){copy, lr_file_stamp_of(path)};
+    list->files[list->count++] = (lr_file){copy, *stamp};
     return true;
+}
+
+bool lr_file_list_add(const lr_load_options *options, const char *path)
+{
+    if (!options || !options->files)
+        return true;
+    lr_file_stamp stamp = lr_file_stamp_of(path);
+    return lr_file_list_put(options->files, path, &stamp);
 }
 
 void lr_file_list_free(lr_file_list *list)
