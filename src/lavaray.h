@@ -31,15 +31,27 @@ typedef struct lr_error {
 
 typedef struct lr_scene lr_scene;
 
+/* What tells one state of a file from another; links are followed. All 0: there is no file. */
+typedef struct lr_file_stamp {
+    uint64_t device, inode, size;
+    int64_t modified; /* nanoseconds since 1970 */
+    bool young;       /* changed so shortly before that one more change may not show */
+} lr_file_stamp;
+
+typedef struct lr_file {
+    char *path;
+    lr_file_stamp stamp; /* as it was right before it was read */
+} lr_file;
+
 #define LR_FILES_MAX 4096
 
-/* Paths, each once, up to LR_FILES_MAX of them. Zeroed is empty; lr_file_list_free leaves it so. */
+/* Files, each once, up to LR_FILES_MAX of them. Zeroed is empty; lr_file_list_free leaves it so. */
 typedef struct lr_file_list {
-    char **paths;
+    lr_file *files;
     uint32_t count, capacity;
 } lr_file_list;
 
-void lr_file_list_free(lr_file_list *files);
+void lr_file_list_free(lr_file_list *list);
 
 /* How scene files are read. What others made may name any file and claim any size. */
 typedef struct lr_load_options {
@@ -53,6 +65,10 @@ typedef struct lr_load_options {
     /* NULL, or where loading adds the files that the scene consists of, as they were looked for:
      * also those that are not there, and also when it fails. */
     lr_file_list *files;
+    /* NULL, or a scene whose meshes and textures are taken instead of being read again, where their
+     * files are still the same. The scenes share them: either may be destroyed first, on any
+     * thread. */
+    const lr_scene *previous;
 } lr_load_options;
 
 /* Reads and checks the scene file at path ("-" is standard input): glTF, OBJ, PLY, STL and NFF by

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 enum {
@@ -98,6 +99,40 @@ lr_status lr_file_read(const char *path, size_t limit, char **bytes, size_t *siz
     if (!is_standard)
         close(fd);
     return status;
+}
+
+/* ---- States -------------------------------------------------------------------------------- */
+
+#define NANOSECONDS 1000000000
+
+/* The clocks of file systems tick up to every 10 ms. */
+#define YOUNG (20 * 1000000)
+
+static int64_t nanoseconds(struct timespec time)
+{
+    return (int64_t)time.tv_sec * NANOSECONDS + time.tv_nsec;
+}
+
+lr_file_stamp lr_file_stamp_of(const char *path)
+{
+    struct stat info;
+    struct timespec now;
+    if (stat(path, &info) != 0)
+        return (lr_file_stamp){0};
+    clock_gettime(CLOCK_REALTIME, &now);
+    int64_t modified = nanoseconds(info.st_mtim), age = nanoseconds(now) - modified;
+    return (lr_file_stamp){.device = info.st_dev,
+                           .inode = info.st_ino,
+                           .size = (uint64_t)info.st_size,
+                           .modified = modified,
+                           /* Other machines' clocks may be ahead by any time. */
+                           .young = age < YOUNG && age > -YOUNG};
+}
+
+bool lr_file_is_same(const lr_file_stamp *earlier, const lr_file_stamp *later)
+{
+    return !earlier->young && earlier->device == later->device && earlier->inode == later->inode &&
+           earlier->size == later->size && earlier->modified == later->modified;
 }
 
 /* ---- Writing ------------------------------------------------------------------------------ */

@@ -9,6 +9,12 @@
  * LR_ERROR_FILE with the path and the reason. */
 lr_status lr_file_read(const char *path, size_t limit, char **bytes, size_t *size, lr_error *error);
 
+/* The state of the file at path right now. */
+lr_file_stamp lr_file_stamp_of(const char *path);
+
+/* Whether nothing can have changed between two states of a path. False after a young one. */
+bool lr_file_is_same(const lr_file_stamp *earlier, const lr_file_stamp *later);
+
 /* Writes size bytes to path ("-": standard output). A regular file is written beside its place
  * under a temporary name, flushed to disk and renamed, so the old file stays whole until the new
  * one is; on any failure the temporary file is removed. Devices and pipes are written directly. */

@@ -98,21 +98,46 @@ lr_status lr_import_progress(lr_import *import, double fraction)
     return LR_OK;
 }
 
+static void count_meshes(const lr_scene *scene, uint64_t *triangles, uint64_t *memory)
+{
+    for (uint32_t i = 0; i < scene->mesh_count; i++) {
+        *triangles += scene->meshes[i].triangle_count;
+        *memory += (uint64_t)scene->meshes[i].triangle_count * 12 +
+                   (uint64_t)scene->meshes[i].vertex_count * 44;
+    }
+}
+
 /* ---- One file ------------------------------------------------------------------------------ */
 
 /* What the meshes of other files of the scene take up already. */
 static void count_present(lr_import *import)
 {
-    const lr_scene *scene = import->builder->scene;
-    for (uint32_t i = 0; i < scene->mesh_count; i++) {
-        import->triangles += scene->meshes[i].triangle_count;
-        import->memory += (uint64_t)scene->meshes[i].triangle_count * 12 +
-                          (uint64_t)scene->meshes[i].vertex_count * 44;
-    }
+    count_meshes(import->builder->scene, &import->triangles, &import->memory);
+    if (import->builder->beside)
+        count_meshes(import->builder->beside, &import->triangles, &import->memory);
     if (import->memory > import->options.max_memory)
         import->memory = import->options.max_memory;
     if (import->triangles > import->options.max_triangles)
         import->triangles = import->options.max_triangles;
+}
+
+/* Fills in the defaults. */
+static void settle(lr_load_options *options)
+{
+    if (options->max_triangles == 0)
+        options->max_triangles = LR_IMPORT_TRIANGLES_DEFAULT;
+    if (options->max_memory == 0)
+        options->max_memory = LR_IMPORT_MEMORY_DEFAULT;
+}
+
+bool lr_import_fits(const lr_scene *scene, const lr_scene *more, const lr_load_options *options)
+{
+    lr_load_options settled = *options;
+    uint64_t triangles = 0, memory = 0;
+    settle(&settled);
+    count_meshes(scene, &triangles, &memory);
+    count_meshes(more, &triangles, &memory);
+    return triangles <= settled.max_triangles && memory <= settled.max_memory;
 }
 
 static void start(lr_import *import, lr_scene_builder *builder, const char *base_file,
@@ -125,10 +150,7 @@ static void start(lr_import *import, lr_scene_builder *builder, const char *base
                           .world = lr_bounds_empty()};
     if (options)
         import->options = *options;
-    if (import->options.max_triangles == 0)
-        import->options.max_triangles = LR_IMPORT_TRIANGLES_DEFAULT;
-    if (import->options.max_memory == 0)
-        import->options.max_memory = LR_IMPORT_MEMORY_DEFAULT;
+    settle(&import->options);
     find_kind(name, &import->kind);
     count_present(import);
 }
@@ -211,6 +233,8 @@ lr_status lr_import_scene(const char *path, const lr_load_options *options, lr_s
     lr_scene_builder builder = {.scene = lr_alloc(1, sizeof(lr_scene))};
     lr_status status = LR_ERROR_MEMORY;
     *scene = NULL;
+    if (options)
+        builder.donors[0] = options->previous;
     start(&import, &builder, path, lr_import_bare_name(path), options, error);
     lr_import_shown(import.shown, sizeof import.shown, path);
     if (builder.scene)

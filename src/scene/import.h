@@ -20,4 +20,7 @@ lr_status lr_import_scene(const char *path, const lr_load_options *options, lr_s
 lr_status lr_import_objects(lr_scene_builder *builder, const char *base_file, const char *name,
                             const lr_load_options *options, lr_error *error);
 
+/* Whether the meshes of both scenes together are within the options' limits. */
+bool lr_import_fits(const lr_scene *scene, const lr_scene *more, const lr_load_options *options);
+
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 
 /* Of a path in a message, so that a long one leaves room for the reason. */
@@ -59,30 +60,37 @@ done:
     return status;
 }
 
-bool lr_file_list_add(const lr_load_options *options, const char *path)
+bool lr_file_list_put(lr_file_list *list, const char *path, const lr_file_stamp *stamp)
 {
-    lr_file_list *files = options ? options->files : NULL;
-    for (uint32_t i = 0; files && i < files->count; i++)
-        if (strcmp(files->paths[i], path) == 0)
+    for (uint32_t i = 0; i < list->count; i++)
+        if (strcmp(list->files[i].path, path) == 0)
             return true;
-    if (!files || files->count == LR_FILES_MAX)
+    if (list->count == LR_FILES_MAX)
         return true;
     char *copy = lr_string_copy(path, strlen(path));
-    if (!copy || !lr_array_reserve((void **)&files->paths, files->count, &files->capacity,
-                                   sizeof *files->paths)) {
+    if (!copy || !lr_array_reserve((void **)&list->files, list->count, &list->capacity,
+                                   sizeof *list->files)) {
         free(copy);
         return false;
     }
-    files->paths[files->count++] = copy;
+    list->files[list->count++] = (lr_file){copy, *stamp};
     return true;
 }
 
-void lr_file_list_free(lr_file_list *files)
+bool lr_file_list_add(const lr_load_options *options, const char *path)
 {
-    for (uint32_t i = 0; i < files->count; i++)
-        free(files->paths[i]);
-    free(files->paths);
-    *files = (lr_file_list){0};
+    if (!options || !options->files)
+        return true;
+    lr_file_stamp stamp = lr_file_stamp_of(path);
+    return lr_file_list_put(options->files, path, &stamp);
+}
+
+void lr_file_list_free(lr_file_list *list)
+{
+    for (uint32_t i = 0; i < list->count; i++)
+        free(list->files[i].path);
+    free(list->files);
+    *list = (lr_file_list){0};
 }
 
 lr_status lr_path_resolve(const char *base_file, const char *relative,

@@ -11,7 +11,11 @@
 lr_status lr_path_resolve(const char *base_file, const char *relative,
                           const lr_load_options *options, char **path, lr_error *error);
 
-/* Adds the path to the options' files, if that is wished for. False when memory is out. */
+/* Adds a file, unless it is there or the list is full. False when memory is out. */
+bool lr_file_list_put(lr_file_list *list, const char *path, const lr_file_stamp *stamp);
+
+/* Adds the file as it is now to the options' list, if that is wished for. False when memory is out.
+ */
 bool lr_file_list_add(const lr_load_options *options, const char *path);
 
 #endif

@@ -3,14 +3,98 @@
 
 #include "base/memory.h"
 #include "scene/import.h"
+#include "scene/part.h"
+#include "scene/path.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+/* Lists the files that something was made of. Of textures, which have parts of their own, these
+ * know what was read. */
+static bool list_files(lr_reader *reader, const lr_file_list *files)
+{
+    bool listed = true;
+    for (uint32_t i = 0; reader->options.files && i < files->count && listed; i++) {
+        const lr_file *file = &files->files[i];
+        const lr_part *own = lr_part_of(reader->scene, file->path);
+        listed = lr_file_list_put(reader->options.files, file->path,
+                                  own ? &own->files.files[0].stamp : &file->stamp);
+    }
+    return listed;
+}
+
+/* What the scene before made of the file; NULL when that is of no use. */
+static lr_part *find_part(lr_reader *reader, const char *name)
+{
+    const lr_load_options *options = &reader->options;
+    lr_error ignored;
+    char *path;
+    if (!options->previous ||
+        lr_path_resolve(reader->report->name, name, options, &path, &ignored) != LR_OK)
+        return NULL;
+    lr_part *part = lr_part_find(&reader->builder, path, options->allow_path);
+    free(path);
+    if (part && lr_import_fits(reader->scene, part->content, options))
+        return part;
+    lr_part_release(part);
+    return NULL;
+}
+
+/* Reads the file into a part with one user. */
+static lr_status import_part(lr_reader *reader, const char *name, lr_part **part, lr_error *error)
+{
+    lr_file_list files = {0};
+    lr_load_options options = reader->options;
+    lr_scene_builder builder = {.scene = lr_alloc(1, sizeof(lr_scene)),
+                                .beside = reader->scene,
+                                .donors = {options.previous}};
+    if (!builder.scene)
+        return LR_ERROR_MEMORY;
+    options.files = &files;
+    lr_status status = lr_import_objects(&builder, reader->report->name, name, &options, error);
+    if (status) {
+        bool listed = list_files(reader, &files);
+        lr_file_list_free(&files);
+        lr_scene_destroy(builder.scene);
+        return listed ? status : LR_ERROR_MEMORY;
+    }
+    *part = lr_part_create(builder.scene, &files, options.allow_path);
+    return *part ? LR_OK : LR_ERROR_MEMORY;
+}
+
+/* The objects of the part's content, placed in the scene. */
+static bool take_objects(lr_mesh_file *file, const lr_part *part, uint32_t first_mesh)
+{
+    const lr_scene *content = part->content;
+    file->count = content->object_count;
+    file->objects = lr_alloc(file->count, sizeof *file->objects);
+    file->bounds = lr_alloc(file->count, sizeof *file->bounds);
+    for (uint32_t i = 0; file->objects && file->bounds && i < file->count; i++) {
+        file->objects[i] = content->objects[i];
+        file->objects[i].mesh += first_mesh;
+        file->objects[i].material += file->first_material;
+        file->bounds[i] = part->bounds[content->objects[i].mesh];
+    }
+    return file->objects && file->bounds;
+}
+
+/* Places the part and hands the caller's use of it to the scene. */
+static lr_status place_part(lr_reader *reader, lr_part *part, lr_mesh_file *file, lr_error *error)
+{
+    uint32_t first_mesh = reader->scene->mesh_count;
+    lr_status status = lr_part_place(&reader->builder, part, error);
+    if (status) {
+        lr_part_release(part);
+        return status;
+    }
+    file->end_material = reader->scene->material_count;
+    bool good = list_files(reader, &part->files) && take_objects(file, part, first_mesh);
+    return lr_scene_add_part(&reader->builder, part) && good ? LR_OK : LR_ERROR_MEMORY;
+}
+
 static bool load(lr_reader *reader, const lr_node *node, lr_mesh_file *file)
 {
     lr_scene *scene = reader->scene;
-    uint32_t before = scene->object_count;
     file->first_material = file->end_material = scene->material_count;
     lr_error error = {0};
     if (!lr_import_knows(file->name)) {
@@ -21,28 +105,22 @@ static bool load(lr_reader *reader, const lr_node *node, lr_mesh_file *file)
                       lr_shown(shown, node->text, node->count));
         return false;
     }
-    lr_status status = lr_import_objects(&reader->builder, reader->report->name, file->name,
-                                         &reader->options, &error);
+    lr_part *part = find_part(reader, file->name);
+    lr_status status = part ? place_part(reader, part, file, &error) : LR_ERROR_FILE;
+    /* It is read where it is new, and where a texture of the part is broken now, which is noted. */
+    if (status == LR_ERROR_FILE) {
+        error = (lr_error){0};
+        status = import_part(reader, file->name, &part, &error);
+        if (!status)
+            status = place_part(reader, part, file, &error);
+    }
     if (status == LR_ERROR_INTERRUPTED)
         reader->report->interrupted = reader->full = true;
+    else if (status == LR_ERROR_MEMORY && !error.message[0])
+        reader->report->no_memory = true;
     else if (status)
         lr_report_add(reader->report, node->offset, "%s", error.message);
-    if (status)
-        return false;
-    file->end_material = scene->material_count;
-    /* Out of the scene again: they are placed wherever the text names the file. */
-    file->count = scene->object_count - before;
-    file->objects = lr_alloc(file->count, sizeof *file->objects);
-    file->bounds = lr_alloc(file->count, sizeof *file->bounds);
-    scene->object_count = before;
-    if (!file->objects || !file->bounds) {
-        reader->report->no_memory = true;
-        return false;
-    }
-    memcpy(file->objects, &scene->objects[before], file->count * sizeof *file->objects);
-    for (uint32_t i = 0; i < file->count; i++)
-        file->bounds[i] = lr_mesh_bounds(&scene->meshes[file->objects[i].mesh]);
-    return true;
+    return !status;
 }
 
 const lr_mesh_file *lr_read_mesh_file(lr_reader *reader, const lr_node *node)

@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "base/memory.h"
 #include "scene/build.h"
+#include "scene/part.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -160,6 +161,8 @@ void lr_read_scene(lr_reader *reader, const lr_node *root)
 static void free_mesh(lr_mesh *mesh)
 {
     free(mesh->name);
+    if (mesh->borrowed)
+        return;
     free(mesh->positions);
     free(mesh->normals);
     free(mesh->uvs);
@@ -170,6 +173,8 @@ static void free_mesh(lr_mesh *mesh)
 static void free_texture(lr_texture *texture)
 {
     free(texture->name);
+    if (texture->borrowed)
+        return;
     free(texture->bytes);
     free(texture->floats);
 }
@@ -188,6 +193,9 @@ void lr_scene_destroy(lr_scene *scene)
         free_texture(&scene->textures[i]);
     for (uint32_t i = 0; i < scene->note_count; i++)
         free(scene->notes[i]);
+    for (uint32_t i = 0; i < scene->part_count; i++)
+        lr_part_release(scene->parts[i]);
+    free(scene->parts);
     free(scene->meshes);
     free(scene->textures);
     free(scene->notes);
@@ -214,6 +222,7 @@ void lr_read_tree(const lr_tree *tree, lr_scene *scene, lr_report *report,
         .report = report, .scene = scene, .builder.scene = scene, .default_material = UINT32_MAX};
     if (options)
         reader.options = *options;
+    reader.builder.donors[0] = reader.options.previous;
     reader.locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     if (!reader.locale)
         report->no_memory = true;

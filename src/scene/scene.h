@@ -27,6 +27,7 @@ typedef struct lr_texture {
     lr_wrap wrap_u, wrap_v;
     uint8_t *bytes; /* 4 a texel, top row first: sRGB red, green, blue, and alpha; or NULL, and */
     float *floats;  /* 3 a texel, top row first: linear red, green, blue >= 0 */
+    bool borrowed;  /* texels of a part of the scene */
 } lr_texture;
 
 /* Triangles with what belongs to their corners, stored once for all the objects that show them. All
@@ -39,7 +40,8 @@ typedef struct lr_mesh {
     float *colors;       /* 3 a vertex, linear, 0..1, times the material's colour; NULL: none */
     uint32_t *triangles; /* 3 vertices a triangle, counter-clockwise as seen from outside */
     uint32_t vertex_count, triangle_count;
-    bool closed; /* it encloses a space, which a transmitting material fills */
+    bool closed;   /* it encloses a space, which a transmitting material fills */
+    bool borrowed; /* arrays of a part of the scene */
 } lr_mesh;
 
 typedef enum lr_pattern_kind {
@@ -154,6 +156,8 @@ typedef struct lr_camera {
     bool fov_to_centers;  /* fov ends at the centres of the outer rows of pixels, as in NFF */
 } lr_camera;
 
+struct lr_part; /* part.h */
+
 struct lr_scene {
     char *source;    /* the name that stands in messages */
     char sha256[65]; /* of the text */
@@ -167,6 +171,8 @@ struct lr_scene {
     uint32_t mesh_count;
     lr_texture *textures;
     uint32_t texture_count;
+    struct lr_part **parts; /* what it shares with other scenes */
+    uint32_t part_count;
     char **notes; /* what an import left out and why, one line each */
     uint32_t note_count;
     lr_light *lights; /* empty only when the scene says `lights: []` */

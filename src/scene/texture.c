@@ -4,23 +4,33 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "image/read.h"
+#include "scene/part.h"
+#include "scene/path.h"
 
 /* Of a name in a message, so that a long one leaves room for the reason. */
 #define SHOWN "%.500s"
 
-static lr_status check_size(const lr_scene *scene, const lr_image *image, const char *name,
-                            lr_error *error)
+static uint64_t texels_of(const lr_scene *scene)
 {
-    if (image->width > LR_TEXTURE_SIDE_MAX || image->height > LR_TEXTURE_SIDE_MAX)
+    uint64_t texels = 0;
+    for (uint32_t i = 0; scene && i < scene->texture_count; i++)
+        texels += (uint64_t)scene->textures[i].width * scene->textures[i].height;
+    return texels;
+}
+
+static lr_status check_size(const lr_scene_builder *builder, uint32_t width, uint32_t height,
+                            const char *name, lr_error *error)
+{
+    if (width > LR_TEXTURE_SIDE_MAX || height > LR_TEXTURE_SIDE_MAX)
         return lr_fail(error, LR_ERROR_FILE,
                        SHOWN ": %u x %u texels; a texture has at most %d along a side: scale it "
                              "down",
-                       name, image->width, image->height, LR_TEXTURE_SIDE_MAX);
-    uint64_t texels = (uint64_t)image->width * image->height;
-    for (uint32_t i = 0; i < scene->texture_count; i++)
-        texels += (uint64_t)scene->textures[i].width * scene->textures[i].height;
+                       name, width, height, LR_TEXTURE_SIDE_MAX);
+    uint64_t texels =
+        (uint64_t)width * height + texels_of(builder->scene) + texels_of(builder->beside);
     if (texels > LR_TEXELS_MAX)
         return lr_fail(error, LR_ERROR_FILE,
                        SHOWN ": with it the scene has over %u texels: scale its textures down",
@@ -66,7 +76,7 @@ static size_t fill_floats(const lr_image *image, float *out)
 static lr_status fill(lr_scene_builder *builder, const lr_image *image, const char *name,
                       lr_texture *texture, lr_error *error)
 {
-    lr_status status = check_size(builder->scene, image, name, error);
+    lr_status status = check_size(builder, image->width, image->height, name, error);
     if (status)
         return status;
     size_t texels = (size_t)image->width * image->height;
@@ -121,6 +131,52 @@ static lr_status add(lr_scene_builder *builder, const lr_image *image, const cha
     return status;
 }
 
+lr_status lr_texture_borrow(lr_scene_builder *builder, const lr_texture *from, uint32_t *texture,
+                            lr_error *error)
+{
+    lr_status status = check_size(builder, from->width, from->height, from->name, error);
+    if (status)
+        return status;
+    char *name = lr_string_copy(from->name, strlen(from->name));
+    lr_texture *added = name ? lr_scene_add_texture(builder) : NULL;
+    if (!added) {
+        free(name);
+        return lr_fail(error, LR_ERROR_MEMORY, SHOWN ": out of memory", from->name);
+    }
+    *added = *from;
+    added->name = name;
+    added->borrowed = true;
+    *texture = builder->scene->texture_count - 1;
+    return LR_OK;
+}
+
+/* Reads the picture into a part with one user. */
+static lr_status read_part(const lr_scene_builder *builder, const char *path, lr_part **part,
+                           lr_error *error)
+{
+    lr_scene_builder own = {.scene = lr_alloc(1, sizeof(lr_scene)), .beside = builder->scene};
+    lr_file_list files = {0};
+    lr_file_stamp stamp = lr_file_stamp_of(path);
+    lr_image image;
+    uint32_t index;
+    *part = NULL;
+    if (!own.scene || !lr_file_list_put(&files, path, &stamp)) {
+        lr_scene_destroy(own.scene);
+        return lr_fail(error, LR_ERROR_MEMORY, SHOWN ": out of memory", path);
+    }
+    lr_status status = lr_image_read(path, &image, error);
+    if (!status)
+        status = add(&own, &image, path, LR_WRAP_REPEAT, LR_WRAP_REPEAT, &index, error);
+    lr_image_free(&image);
+    if (!status) {
+        *part = lr_part_create(own.scene, &files, false);
+        return *part ? LR_OK : lr_fail(error, LR_ERROR_MEMORY, SHOWN ": out of memory", path);
+    }
+    lr_file_list_free(&files);
+    lr_scene_destroy(own.scene);
+    return status;
+}
+
 lr_status lr_texture_load(lr_scene_builder *builder, const char *path, lr_wrap wrap_u,
                           lr_wrap wrap_v, uint32_t *texture, lr_error *error)
 {
@@ -132,12 +188,24 @@ lr_status lr_texture_load(lr_scene_builder *builder, const char *path, lr_wrap w
             return LR_OK;
         }
     }
-    lr_image image;
-    lr_status status = lr_image_read(path, &image, error);
-    if (!status)
-        status = add(builder, &image, path, wrap_u, wrap_v, texture, error);
-    lr_image_free(&image);
-    return status;
+    lr_status status = LR_OK;
+    lr_part *part = lr_part_find(builder, path, false);
+    if (!part)
+        status = read_part(builder, path, &part, error);
+    if (status)
+        return status;
+    bool good = lr_scene_add_part(builder, part);
+    const lr_scene *content = good ? part->content : NULL;
+    if (good)
+        status = lr_texture_borrow(builder, &content->textures[0], texture, error);
+    if (good && !status) {
+        lr_texture *added = &builder->scene->textures[*texture];
+        added->wrap_u = wrap_u;
+        added->wrap_v = wrap_v;
+        for (uint32_t i = 0; i < content->note_count && good; i++)
+            good = lr_scene_add_note(builder, "%s", content->notes[i]);
+    }
+    return good ? status : lr_fail(error, LR_ERROR_MEMORY, SHOWN ": out of memory", path);
 }
 
 lr_status lr_texture_decode(lr_scene_builder *builder, const void *bytes, size_t length,

@@ -25,4 +25,8 @@ lr_status lr_texture_decode(lr_scene_builder *builder, const void *bytes, size_t
                             const char *name, lr_wrap wrap_u, lr_wrap wrap_v, uint32_t *texture,
                             lr_error *error);
 
+/* Adds a texture whose texels belong to a part of the scene. */
+lr_status lr_texture_borrow(lr_scene_builder *builder, const lr_texture *from, uint32_t *texture,
+                            lr_error *error);
+
 #endif

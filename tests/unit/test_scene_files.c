@@ -7,8 +7,12 @@ static bool lists(const lr_file_list *files, const char *name)
     char path[256];
     file_path(path, name);
     for (uint32_t i = 0; i < files->count; i++)
-        if (strcmp(files->paths[i], path) == 0)
-            return true;
+        if (strcmp(files->files[i].path, path) == 0) {
+            struct stat info;
+            bool there = stat(path, &info) == 0;
+            return files->files[i].stamp.inode == (there ? info.st_ino : 0) &&
+                   files->files[i].stamp.size == (there ? (uint64_t)info.st_size : 0);
+        }
     return false;
 }
 
@@ -31,12 +35,12 @@ static void expect_files(const char *name, const char *names, lr_status expected
             fail_msg("%s: %s is not listed", name, word);
     if (files.count != count)
         for (uint32_t i = 0; i < files.count; i++)
-            print_error("%s\n", files.paths[i]);
+            print_error("%s\n", files.files[i].path);
     assert_int_equal(files.count, count);
     free(report);
     lr_scene_destroy(scene);
     lr_file_list_free(&files);
-    assert_null(files.paths);
+    assert_null(files.files);
     assert_int_equal(files.count, 0);
 }
 
