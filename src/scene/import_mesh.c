@@ -131,7 +131,7 @@ static lr_status cut_faces(builder *b)
         b->label);
     if (status)
         return status;
-    b->triangles = malloc((3 * (size_t)total + 1) * sizeof *b->triangles);
+    b->triangles = lr_alloc_large(3 * (size_t)total, sizeof *b->triangles);
     b->polygon = malloc(sizeof *b->polygon);
     if (!b->triangles || !b->polygon)
         return lr_import_no_memory(import);
