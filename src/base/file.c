@@ -11,6 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/memory.h"
+
 enum {
     TRANSFER_LIMIT = 1 << 30, /* Linux moves at most 2 GiB per call */
     TEMPORARY_NAMES = 1000,
@@ -36,7 +38,7 @@ static lr_status read_all(int fd, const char *name, size_t limit, size_t expecte
                           size_t *size, lr_error *error)
 {
     size_t used = 0, capacity = expected < 65536 ? 65536 : expected;
-    char *buffer = malloc(capacity + 1);
+    char *buffer = lr_alloc_large(capacity + 1, 1);
     while (buffer) {
         size_t room = capacity - used < TRANSFER_LIMIT ? capacity - used : TRANSFER_LIMIT;
         ssize_t got = room ? read(fd, buffer + used, room) : 0;

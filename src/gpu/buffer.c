@@ -75,6 +75,9 @@ lr_status lr_buffer_create(lr_device *device, lr_buffer_kind kind, VkDeviceSize 
         status = lr_fail(error, LR_ERROR_DEVICE, "the device has no memory for %s", what);
         goto fail;
     }
+    const VkMemoryPropertyFlags direct =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    buffer->direct = (device->memory.memoryTypes[type].propertyFlags & direct) == direct;
     VkMemoryAllocateInfo allocate = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
         .allocationSize = needs.size,
@@ -112,9 +115,24 @@ void lr_buffer_destroy(lr_device *device, lr_buffer *buffer)
     *buffer = (lr_buffer){0};
 }
 
+static lr_status write_direct(lr_device *device, lr_buffer *buffer, const void *bytes, size_t size,
+                              lr_error *error)
+{
+    lr_status status = LR_OK;
+    lr_vk *vk = &device->vk;
+    void *mapped;
+    LR_VK(vk, vkMapMemory, device->handle, buffer->memory, 0, VK_WHOLE_SIZE, 0, &mapped);
+    memcpy(mapped, bytes, size);
+    vk->vkUnmapMemory(device->handle, buffer->memory);
+fail:
+    return status;
+}
+
 lr_status lr_buffer_upload(lr_device *device, lr_buffer *buffer, const void *bytes, size_t size,
                            lr_error *error)
 {
+    if (buffer->direct)
+        return write_direct(device, buffer, bytes, size, error);
     lr_buffer staging;
     size_t piece = size < STAGING_MAX ? size : STAGING_MAX;
     lr_status status =

@@ -10,6 +10,7 @@ typedef struct lr_buffer {
     VkBufferView view; /* RGBA32UI, only of texel buffers */
     VkDeviceSize size;
     void *mapped; /* only of host buffers */
+    bool direct;  /* the host can write its memory, as where host and device have the same */
 } lr_buffer;
 
 typedef enum lr_buffer_kind {
@@ -26,7 +27,8 @@ lr_status lr_buffer_create(lr_device *device, lr_buffer_kind kind, VkDeviceSize 
                            const char *what, lr_buffer *buffer, lr_error *error);
 void lr_buffer_destroy(lr_device *device, lr_buffer *buffer);
 
-/* Copies size bytes into the start of a device buffer and waits for it. */
+/* Copies size bytes into the start of a device buffer that no work on the device uses, and waits
+ * for it. */
 lr_status lr_buffer_upload(lr_device *device, lr_buffer *buffer, const void *bytes, size_t size,
                            lr_error *error);
 

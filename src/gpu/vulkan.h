@@ -39,6 +39,7 @@
     X(vkFreeMemory)                                                                                \
     X(vkBindBufferMemory)                                                                          \
     X(vkMapMemory)                                                                                 \
+    X(vkUnmapMemory)                                                                               \
     X(vkCreateBufferView)                                                                          \
     X(vkDestroyBufferView)                                                                         \
     X(vkCreateShaderModule)                                                                        \

@@ -36,11 +36,11 @@ void lr_picture_hash(const lr_picture *picture, char hash[65])
         put_little_endian(block + used, bits == 0x80000000u ? 0 : bits);
         used += 4;
         if (used == sizeof block) {
-            SHA256Update(&context, block, used);
+            lr_hash_update(&context, block, used);
             used = 0;
         }
     }
-    SHA256Update(&context, block, used);
+    lr_hash_update(&context, block, used);
     SHA256Final(digest, &context);
     lr_hash_text(digest, hash);
 }

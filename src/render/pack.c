@@ -25,9 +25,16 @@ bool lr_pack_reserve(lr_packed_scene *packed, uint64_t rows)
         return true;
     if (wanted >= UINT32_MAX)
         return false;
-    vec4 *grown = realloc(packed->rows, wanted * sizeof *grown);
+    /* By half at least, so that growing often is not slow. */
+    uint64_t grown_by_half = packed->row_capacity + (uint64_t)packed->row_capacity / 2 + 64;
+    wanted = wanted > grown_by_half ? wanted : grown_by_half;
+    wanted = wanted < UINT32_MAX ? wanted : UINT32_MAX;
+    vec4 *grown = lr_alloc_large(wanted, sizeof *grown);
     if (!grown)
         return false;
+    if (packed->rows)
+        memcpy(grown, packed->rows, packed->row_count * sizeof *grown);
+    free(packed->rows);
     packed->rows = grown;
     packed->row_capacity = (uint32_t)wanted;
     return true;
@@ -35,10 +42,9 @@ bool lr_pack_reserve(lr_packed_scene *packed, uint64_t rows)
 
 uint32_t lr_pack_rows(lr_packed_scene *packed, const void *record, uint32_t rows)
 {
-    uint32_t first = packed->row_count;
-    uint64_t room = packed->row_capacity - first;
-    if (room < rows && !lr_pack_reserve(packed, (uint64_t)first / 2 + rows + 64))
+    if (!lr_pack_reserve(packed, rows))
         return UINT32_MAX;
+    uint32_t first = packed->row_count;
     memcpy(&packed->rows[first], record, 16 * (size_t)rows);
     packed->row_count += rows;
     return first;

@@ -15,15 +15,19 @@ typedef struct lr_settings {
     uint32_t leaf_size, threads; /* of the builder of trees; 0: as suits them */
 } lr_settings;
 
+/* Of the corners of what stands in trees: how many, the sums of their coordinates and of the
+ * squares of these. */
+typedef struct lr_places {
+    double count, sum[3], square_sum[3];
+} lr_places;
+
 typedef struct lr_packed_scene {
     vec4 *rows; /* owned */
     uint32_t row_count, row_capacity;
     uint32_t light_count;
     uint32_t tests_per_ray;      /* about so many primitives does a ray meet on its way */
     uint32_t leaf_size, threads; /* of lr_settings */
-    /* Of the corners of what stands in trees: how many, the sums of their coordinates and of the
-     * squares of these. */
-    double places, place_sum[3], place_square_sum[3];
+    lr_places places;
     struct gpu_frame frame;
     uint32_t constants[LR_SPEC_COUNT]; /* but for those that only the device decides */
 } lr_packed_scene;

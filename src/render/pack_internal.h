@@ -57,9 +57,10 @@ uint32_t lr_pack_tree(lr_packed_scene *packed, const lr_bvh *bvh, uint32_t first
 lr_status lr_pack_build(const lr_packed_scene *packed, const lr_bvh_box *boxes, uint32_t count,
                         uint32_t leaf_size, lr_bvh **bvh, lr_error *error);
 
-/* Notes where something in a tree is, and lays the cells around most of what was noted: within two
- * standard deviations of the mean. */
-void lr_pack_place(lr_packed_scene *packed, const lr_bvh_box *box);
+/* Notes where something in a tree is; adds up such notes; lays the cells around most of what was
+ * noted: within two standard deviations of the mean. */
+void lr_pack_place(lr_places *places, const lr_bvh_box *box);
+void lr_pack_add_places(lr_places *places, const lr_places *more);
 void lr_pack_cells(lr_packed_scene *packed);
 
 /* pack_repeated.c: whether thousands of a tree's boxes are the same; and which primitives another

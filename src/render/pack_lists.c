@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 
 /* Up to so many bounded primitives, and no mesh, every ray tests the balls of all of them. */
 #define UNSORTED_MAX 32
@@ -44,59 +45,94 @@ static uint32_t pack_lone_leaf(lr_packed_scene *packed, const lr_bvh_node *leaf,
     return lr_pack_rows(packed, &node, LR_NODE_ROWS);
 }
 
+/* A hierarchy on its way into rows. */
+typedef struct tree_packing {
+    const lr_bvh_node *nodes;
+    uint32_t node_count;
+    const uint32_t *references; /* what stands for each node in its parent */
+    struct gpu_node *out;       /* the inner nodes */
+    uint32_t root;              /* the row of the first of them */
+} tree_packing;
+
+#define NODES_A_PART 32768
+
+static void pack_nodes(void *context, uint32_t part)
+{
+    const tree_packing *t = context;
+    uint64_t end = (uint64_t)(part + 1) * NODES_A_PART;
+    for (uint32_t i = part * NODES_A_PART; i < t->node_count && i < end; i++) {
+        if (t->nodes[i].count)
+            continue;
+        uint32_t right = t->nodes[i].link;
+        const lr_bvh_node *children[2] = {&t->nodes[i + 1], &t->nodes[right]};
+        t->out[(t->references[i] - t->root) / LR_NODE_ROWS] = (struct gpu_node){
+            .min0 = pack_corner(children[0]->min),
+            .child0 = t->references[i + 1],
+            .max0 = pack_corner(children[0]->max),
+            .child1 = t->references[right],
+            .min1 = pack_corner(children[1]->min),
+            .max1 = pack_corner(children[1]->max),
+        };
+    }
+}
+
 uint32_t lr_pack_tree(lr_packed_scene *packed, const lr_bvh *bvh, uint32_t first)
 {
     const lr_bvh_node *nodes = bvh->nodes;
     if (nodes[0].count)
         return pack_lone_leaf(packed, &nodes[0], first);
-    uint32_t *rows = lr_alloc_large(bvh->node_count, sizeof *rows), inner = 0;
+    uint32_t *references = lr_alloc_large(bvh->node_count, sizeof *references), inner = 0;
     uint32_t root = packed->row_count;
-    if (!rows || !lr_pack_reserve(packed, (uint64_t)bvh->node_count / 2 * LR_NODE_ROWS)) {
-        free(rows);
+    if (!references || !lr_pack_reserve(packed, (uint64_t)bvh->node_count / 2 * LR_NODE_ROWS)) {
+        free(references);
         return UINT32_MAX;
     }
     for (uint32_t i = 0; i < bvh->node_count; i++)
-        rows[i] = nodes[i].count ? leaf_reference(&nodes[i], first) : root + LR_NODE_ROWS * inner++;
-    for (uint32_t i = 0; i < bvh->node_count; i++) {
-        if (nodes[i].count)
-            continue;
-        const lr_bvh_node *left = &nodes[i + 1], *right = &nodes[nodes[i].link];
-        struct gpu_node node = {
-            .min0 = pack_corner(left->min),
-            .child0 = rows[i + 1],
-            .max0 = pack_corner(left->max),
-            .child1 = rows[nodes[i].link],
-            .min1 = pack_corner(right->min),
-            .max1 = pack_corner(right->max),
-        };
-        lr_pack_rows(packed, &node, LR_NODE_ROWS);
-    }
-    free(rows);
+        references[i] =
+            nodes[i].count ? leaf_reference(&nodes[i], first) : root + LR_NODE_ROWS * inner++;
+    tree_packing packing = {nodes, bvh->node_count, references,
+                            (struct gpu_node *)(void *)&packed->rows[root], root};
+    lr_run_parallel_on(packed->threads, (bvh->node_count - 1) / NODES_A_PART + 1, pack_nodes,
+                       &packing);
+    packed->row_count += LR_NODE_ROWS * inner;
+    free(references);
     return root;
 }
 
 void lr_pack_reach(float *reach, const lr_bvh_box *box)
 {
-    for (int i = 0; i < 3; i++)
-        *reach = fmaxf(*reach, fmaxf(fabsf(box->min[i]), fabsf(box->max[i])));
+    for (int i = 0; i < 3; i++) {
+        float low = fabsf(box->min[i]), high = fabsf(box->max[i]), most = low > high ? low : high;
+        *reach = most > *reach ? most : *reach;
+    }
 }
 
-void lr_pack_place(lr_packed_scene *packed, const lr_bvh_box *box)
+void lr_pack_place(lr_places *places, const lr_bvh_box *box)
 {
-    packed->places += 2;
+    places->count += 2;
     for (int i = 0; i < 3; i++) {
         double low = box->min[i], high = box->max[i];
-        packed->place_sum[i] += low + high;
-        packed->place_square_sum[i] += low * low + high * high;
+        places->sum[i] += low + high;
+        places->square_sum[i] += low * low + high * high;
+    }
+}
+
+void lr_pack_add_places(lr_places *places, const lr_places *more)
+{
+    places->count += more->count;
+    for (int i = 0; i < 3; i++) {
+        places->sum[i] += more->sum[i];
+        places->square_sum[i] += more->square_sum[i];
     }
 }
 
 void lr_pack_cells(lr_packed_scene *packed)
 {
     float *from = &packed->frame.cells_from.x, *inverse = &packed->frame.inv_cell.x;
-    for (int i = 0; i < 3 && packed->places; i++) {
-        double mean = packed->place_sum[i] / packed->places;
-        double square = packed->place_square_sum[i] / packed->places;
+    const lr_places *p = &packed->places;
+    for (int i = 0; i < 3 && p->count > 0; i++) {
+        double mean = p->sum[i] / p->count;
+        double square = p->square_sum[i] / p->count;
         double deviation = sqrt(fmax(square - mean * mean, 0)) + fabs(mean) * 1e-6 + 1e-20;
         from[i] = (float)(mean - 2 * deviation);
         inverse[i] = (float)((1 << LR_CELL_BITS) / (4 * deviation));
@@ -121,7 +157,7 @@ static lr_status build_tree(lr_packed_scene *packed, const lr_primitive *primiti
     for (uint32_t i = 0; i < count; i++) {
         boxes[i] = primitives[members[i]].box;
         lr_pack_reach(&packed->frame.reach, &boxes[i]);
-        lr_pack_place(packed, &boxes[i]);
+        lr_pack_place(&packed->places, &boxes[i]);
     }
     lr_status status = lr_pack_build(packed, boxes, count, LEAF_SIZE, bvh, error);
     free(boxes);

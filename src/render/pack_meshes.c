@@ -1,8 +1,7 @@
-/* Meshes and the objects that show them. The meshes that one object shows are brought into the
- * world and stand in one tree together; a mesh that several show has a tree in its own space. */
-#include "render/pack_internal.h"
+/* Meshes. Those that one object shows are brought into the world and stand in one tree together; a
+ * mesh that several show has a tree in its own space. */
+#include "render/pack_meshes.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,18 +18,10 @@ typedef struct facet {
     uint32_t mesh, triangle, object;
 } facet;
 
-/* What all the triangles' records come from. */
-typedef struct mesh_packing {
-    const lr_scene *scene;
-    const uint32_t *object_flags;
-    lr_packed_scene *packed;
-    uint32_t *users;             /* of each mesh: how many objects show it */
-    uint32_t *shown_by;          /* the last of them */
-    uint32_t *vertex_rows;       /* where its vertices' rows begin, if it has any */
-    struct gpu_corners *corners; /* of all triangles, in the order of their numbers */
-    struct gpu_instance *instances;
-    uint32_t instance_count, triangle_count;
-} mesh_packing;
+lr_status lr_pack_no_memory(lr_error *error)
+{
+    return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's meshes");
+}
 
 static bool is_mirrored(const lr_transform *t)
 {
@@ -103,24 +94,83 @@ static lr_bvh_box box_of(const vec3 c[3])
     };
 }
 
-/* Adds a mesh's triangles with their boxes, those without an area left out. Returns the new count.
- */
-static uint32_t add_facets(const mesh_packing *m, uint32_t mesh, uint32_t object, bool shared,
-                           facet *facets, lr_bvh_box *boxes, uint32_t count)
+/* The triangles of a tree, and what their boxes come to. */
+typedef struct facet_list {
+    facet *facets;
+    lr_bvh_box *boxes;
+    uint32_t count;
+    float reach;
+    lr_places places;
+} facet_list;
+
+/* A mesh on its way into a list; each part fills a list of its own within that one. */
+typedef struct facet_listing {
+    const mesh_packing *m;
+    uint32_t mesh, object;
+    bool shared;
+    facet_list *parts;
+} facet_listing;
+
+#define FACETS_A_PART 32768
+
+static uint32_t part_count(uint32_t facets)
 {
-    const lr_mesh *from = &m->scene->meshes[mesh];
-    placement p = place_mesh(m, object, shared);
-    for (uint32_t i = 0; i < from->triangle_count; i++) {
+    return facets / FACETS_A_PART + 1;
+}
+
+static uint32_t part_end(uint32_t part, uint32_t facets)
+{
+    return facets / FACETS_A_PART == part ? facets : (part + 1) * FACETS_A_PART;
+}
+
+static void list_part(void *context, uint32_t part)
+{
+    const facet_listing *l = context;
+    const lr_mesh *from = &l->m->scene->meshes[l->mesh];
+    placement p = place_mesh(l->m, l->object, l->shared);
+    facet_list list = l->parts[part];
+    for (uint32_t i = part * FACETS_A_PART; i < part_end(part, from->triangle_count); i++) {
         uint32_t vertices[3];
         vec3 corners[3];
         facet_vertices(from, i, p.mirrored, vertices);
         facet_corners(from, vertices, &p, corners);
         if (!has_area(corners))
             continue;
-        facets[count] = (facet){mesh, i, object};
-        boxes[count++] = box_of(corners);
+        lr_bvh_box *box = &list.boxes[list.count];
+        *box = box_of(corners);
+        list.facets[list.count++] = (facet){l->mesh, i, l->object};
+        lr_pack_reach(&list.reach, box);
+        lr_pack_place(&list.places, box);
     }
-    return count;
+    l->parts[part] = list;
+}
+
+/* Adds a mesh's triangles, those without an area left out. False when memory is out. */
+static bool add_facets(const mesh_packing *m, uint32_t mesh, uint32_t object, bool shared,
+                       facet_list *list)
+{
+    uint32_t total = m->scene->meshes[mesh].triangle_count;
+    facet_list *parts = lr_alloc(part_count(total), sizeof *parts);
+    if (!parts)
+        return false;
+    for (uint32_t i = 0; i < part_count(total); i++) {
+        size_t from = list->count + (size_t)i * FACETS_A_PART;
+        parts[i] = (facet_list){.facets = &list->facets[from], .boxes = &list->boxes[from]};
+    }
+    facet_listing listing = {m, mesh, object, shared, parts};
+    lr_run_parallel_on(m->packed->threads, part_count(total), list_part, &listing);
+    for (uint32_t i = 0; i < part_count(total); i++) {
+        const facet_list *part = &parts[i];
+        if (part->facets != &list->facets[list->count]) {
+            memmove(&list->facets[list->count], part->facets, part->count * sizeof(facet));
+            memmove(&list->boxes[list->count], part->boxes, part->count * sizeof(lr_bvh_box));
+        }
+        list->count += part->count;
+        list->reach = greatest(list->reach, part->reach);
+        lr_pack_add_places(&list->places, &part->places);
+    }
+    free(parts);
+    return true;
 }
 
 static uint32_t attribute_flags(const lr_mesh *mesh)
@@ -137,8 +187,6 @@ typedef struct facet_work {
     bool shared;
     uint32_t first_row, first; /* of the records, and of the corners */
 } facet_work;
-
-#define FACETS_A_PART 32768
 
 static void pack_facet(const facet_work *work, uint32_t place)
 {
@@ -167,21 +215,8 @@ static void pack_facet(const facet_work *work, uint32_t place)
 static void pack_part(void *context, uint32_t part)
 {
     const facet_work *work = context;
-    uint64_t end = (uint64_t)(part + 1) * FACETS_A_PART;
-    for (uint32_t i = part * FACETS_A_PART; i < work->bvh->count && i < end; i++)
+    for (uint32_t i = part * FACETS_A_PART; i < part_end(part, work->bvh->count); i++)
         pack_facet(work, i);
-}
-
-/* The tree of some meshes. */
-typedef struct mesh_tree {
-    lr_bvh *bvh;
-    uint32_t first; /* number of its first triangle */
-    float reach;
-} mesh_tree;
-
-static lr_status no_memory(lr_error *error)
-{
-    return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's meshes");
 }
 
 /* ---- Triangles in the same place ---- */
@@ -226,64 +261,63 @@ static bool hides(const void *context, uint32_t first, uint32_t later)
            (f[0]->object == f[1]->object || (!(a & LR_FLAG_ONE_SIDED) && dark));
 }
 
-/* Drops the facets that others hide; *count becomes how many are left. False when memory is out. */
-static bool drop_hidden(const heap *h, facet *facets, lr_bvh_box *boxes, uint32_t *count)
+/* Drops the facets that others hide. False when memory is out. */
+static bool drop_hidden(const heap *h, facet_list *list)
 {
     const lr_scene *scene = h->m->scene;
     for (uint32_t i = 0; i < scene->object_count && h->shared; i++)
-        if (scene->objects[i].kind == LR_MESH && scene->objects[i].mesh == facets[0].mesh &&
+        if (scene->objects[i].kind == LR_MESH && scene->objects[i].mesh == list->facets[0].mesh &&
             !is_opaque(h->m, i))
             return true;
-    bool *hidden = lr_alloc_large(*count, sizeof *hidden);
-    bool found = hidden && lr_pack_find_repeated(boxes, *count, hides, h, hidden);
+    bool *hidden = lr_alloc_large(list->count, sizeof *hidden);
+    bool found = hidden && lr_pack_find_repeated(list->boxes, list->count, hides, h, hidden);
     uint32_t kept = 0;
-    for (uint32_t i = 0; i < *count && found; i++) {
+    for (uint32_t i = 0; i < list->count && found; i++) {
         if (hidden[i])
             continue;
-        facets[kept] = facets[i];
-        boxes[kept++] = boxes[i];
+        list->facets[kept] = list->facets[i];
+        list->boxes[kept++] = list->boxes[i];
     }
-    *count = found ? kept : *count;
+    list->count = found ? kept : list->count;
     free(hidden);
     return found;
 }
 
-/* The tree over `count` facets, fewer afterwards where thousands are in the same place. */
-static lr_status build_facets(mesh_packing *m, facet *facets, lr_bvh_box *boxes, uint32_t *count,
-                              bool shared, mesh_tree *tree, lr_error *error)
+/* The tree over the facets, fewer afterwards where thousands are in the same place. */
+static lr_status build_facets(mesh_packing *m, facet_list *list, bool shared, mesh_tree *tree,
+                              lr_error *error)
 {
-    uint32_t leaf_size = *count > MANY ? LEAF_SIZE_OF_MANY : LEAF_SIZE, before = *count;
-    lr_status status = lr_pack_build(m->packed, boxes, *count, leaf_size, &tree->bvh, error);
+    uint32_t before = list->count, leaf_size = before > MANY ? LEAF_SIZE_OF_MANY : LEAF_SIZE;
+    lr_status status = lr_pack_build(m->packed, list->boxes, before, leaf_size, &tree->bvh, error);
     if (status || !lr_pack_has_heaps(tree->bvh))
         return status;
-    if (!drop_hidden(&(heap){m, facets, shared}, facets, boxes, count))
-        return no_memory(error);
-    if (*count == before)
+    if (!drop_hidden(&(heap){m, list->facets, shared}, list))
+        return lr_pack_no_memory(error);
+    if (list->count == before)
         return LR_OK;
     lr_bvh_destroy(tree->bvh);
-    return lr_pack_build(m->packed, boxes, *count, leaf_size, &tree->bvh, error);
+    return lr_pack_build(m->packed, list->boxes, list->count, leaf_size, &tree->bvh, error);
 }
 
-/* Builds the tree over `count` facets and packs their records in the order of its leaves. */
-static lr_status pack_facets(mesh_packing *m, facet *facets, lr_bvh_box *boxes, uint32_t count,
-                             bool shared, mesh_tree *tree, lr_error *error)
+/* Builds the tree over the facets and packs their records in the order of its leaves. */
+static lr_status pack_facets(mesh_packing *m, facet_list *list, bool shared, mesh_tree *tree,
+                             lr_error *error)
 {
     lr_packed_scene *packed = m->packed;
-    for (uint32_t i = 0; i < count; i++) {
-        lr_pack_reach(&tree->reach, &boxes[i]);
-        if (!shared)
-            lr_pack_place(packed, &boxes[i]);
-    }
+    tree->reach = list->reach;
+    if (!shared)
+        lr_pack_add_places(&packed->places, &list->places);
     tree->first = packed->frame.triangles.begin + m->triangle_count;
-    lr_status status = build_facets(m, facets, boxes, &count, shared, tree, error);
+    lr_status status = build_facets(m, list, shared, tree, error);
     if (status)
         return status;
-    if (!lr_pack_reserve(packed, 3ull * count))
-        return no_memory(error);
-    facet_work work = {m, facets, tree->bvh, shared, packed->row_count, m->triangle_count};
-    lr_run_parallel((count + FACETS_A_PART - 1) / FACETS_A_PART, pack_part, &work);
-    packed->row_count += 3 * count;
-    m->triangle_count += count;
+    /* With room for the tree's nodes, so that what is packed here need not move for them. */
+    if (!lr_pack_reserve(packed, 3ull * list->count + LR_NODE_ROWS * (tree->bvh->node_count / 2)))
+        return lr_pack_no_memory(error);
+    facet_work work = {m, list->facets, tree->bvh, shared, packed->row_count, m->triangle_count};
+    lr_run_parallel_on(packed->threads, part_count(list->count), pack_part, &work);
+    packed->row_count += 3 * list->count;
+    m->triangle_count += list->count;
     return LR_OK;
 }
 
@@ -297,21 +331,21 @@ static lr_status pack_tree_of(mesh_packing *m, uint32_t mesh, mesh_tree *tree, l
     for (uint32_t i = 0; i < scene->mesh_count; i++)
         if (shared ? i == mesh : m->users[i] == 1)
             total += scene->meshes[i].triangle_count;
-    facet *facets = lr_alloc_large(total, sizeof *facets);
-    lr_bvh_box *boxes = lr_alloc_large(total, sizeof *boxes);
-    uint32_t count = 0;
-    lr_status status = facets && boxes ? LR_OK : no_memory(error);
-    if (!status && shared)
-        count = add_facets(m, mesh, m->shown_by[mesh], true, facets, boxes, 0);
-    for (uint32_t i = 0; i < scene->object_count && !status && !shared; i++) {
+    facet_list list = {.facets = lr_alloc_large(total, sizeof *list.facets),
+                       .boxes = lr_alloc_large(total, sizeof *list.boxes)};
+    bool fits = list.facets && list.boxes;
+    if (fits && shared)
+        fits = add_facets(m, mesh, m->shown_by[mesh], true, &list);
+    for (uint32_t i = 0; i < scene->object_count && fits && !shared; i++) {
         const lr_object *object = &scene->objects[i];
         if (object->kind == LR_MESH && m->users[object->mesh] == 1)
-            count = add_facets(m, object->mesh, i, false, facets, boxes, count);
+            fits = add_facets(m, object->mesh, i, false, &list);
     }
-    if (count)
-        status = pack_facets(m, facets, boxes, count, shared, tree, error);
-    free(facets);
-    free(boxes);
+    lr_status status = fits ? LR_OK : lr_pack_no_memory(error);
+    if (fits && list.count)
+        status = pack_facets(m, &list, shared, tree, error);
+    free(list.facets);
+    free(list.boxes);
     return status;
 }
 
@@ -323,136 +357,6 @@ static lr_status pack_trees(mesh_packing *m, mesh_tree *trees, lr_error *error)
     for (uint32_t i = 0; i < count && !status; i++)
         if (m->users[i] > 1)
             status = pack_tree_of(m, i, &trees[i], error);
-    return status;
-}
-
-static struct gpu_instance *add_instance(mesh_packing *m, const lr_transform *to_mesh,
-                                         const mesh_tree *tree, uint32_t nodes)
-{
-    struct gpu_instance *instance = &m->instances[m->instance_count++];
-    *instance = (struct gpu_instance){.row0 = lr_pack_row(to_mesh->m[0], 1),
-                                      .row1 = lr_pack_row(to_mesh->m[1], 1),
-                                      .row2 = lr_pack_row(to_mesh->m[2], 1),
-                                      .nodes = nodes,
-                                      .reach = tree->reach};
-    return instance;
-}
-
-/* The box in the world of what an object shows. */
-static lr_bvh_box box_in_world(const lr_bvh_node *root, const lr_transform *to_world)
-{
-    lr_bvh_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (int i = 0; i < 8; i++) {
-        lr_vec3 p = {i & 1 ? root->max[0] : root->min[0], i & 2 ? root->max[1] : root->min[1],
-                     i & 4 ? root->max[2] : root->min[2]};
-        p = lr_transform_point(to_world, p);
-        const float q[3] = {(float)p.x, (float)p.y, (float)p.z};
-        for (int k = 0; k < 3; k++) {
-            box.min[k] = fminf(box.min[k], q[k]);
-            box.max[k] = fmaxf(box.max[k], q[k]);
-        }
-    }
-    return box;
-}
-
-/* Packs the trees' nodes and makes the instances and the boxes around them. */
-static bool place_meshes(mesh_packing *m, const mesh_tree *trees, uint32_t *instances,
-                         lr_bvh_box *boxes)
-{
-    const lr_scene *scene = m->scene;
-    const mesh_tree *world = &trees[scene->mesh_count];
-    const lr_transform identity = lr_transform_identity();
-    uint32_t *roots = lr_alloc(scene->mesh_count, sizeof *roots);
-    bool fits = roots;
-    if (fits && world->bvh) {
-        uint32_t root = lr_pack_tree(m->packed, world->bvh, world->first);
-        fits = root != UINT32_MAX;
-        boxes[m->instance_count] = box_in_world(world->bvh->nodes, &identity);
-        add_instance(m, &identity, world, root);
-    }
-    for (uint32_t i = 0; i < scene->mesh_count && fits; i++)
-        if (trees[i].bvh) {
-            roots[i] = lr_pack_tree(m->packed, trees[i].bvh, trees[i].first);
-            fits = roots[i] != UINT32_MAX;
-        }
-    for (uint32_t i = 0; i < scene->object_count && fits; i++) {
-        const lr_object *object = &scene->objects[i];
-        if (object->kind != LR_MESH || !trees[object->mesh].bvh)
-            continue;
-        const mesh_tree *tree = &trees[object->mesh];
-        lr_transform to_mesh = lr_pack_inverse(&object->to_world);
-        instances[i] = m->instance_count;
-        boxes[m->instance_count] = box_in_world(tree->bvh->nodes, &object->to_world);
-        lr_pack_place(m->packed, &boxes[m->instance_count]);
-        struct gpu_instance *instance = add_instance(m, &to_mesh, tree, roots[object->mesh]);
-        instance->object = i;
-        instance->flags = m->object_flags[i];
-    }
-    free(roots);
-    return fits;
-}
-
-/* The instances in a list, or in a tree if they are many. instances[] is brought to their order. */
-static lr_status pack_instances(mesh_packing *m, const lr_bvh_box *boxes, uint32_t *instances,
-                                lr_error *error)
-{
-    uint32_t count = m->instance_count;
-    gpu_list *list = &m->packed->frame.instances;
-    bool tree = count > LR_LISTED_MAX;
-    lr_bvh *bvh = NULL;
-    lr_status status = LR_OK;
-    for (uint32_t i = 0; i < count && tree; i++)
-        lr_pack_reach(&m->packed->frame.reach, &boxes[i]);
-    if (tree)
-        status = lr_pack_build(m->packed, boxes, count, 1, &bvh, error);
-    uint32_t *place = lr_alloc(count, sizeof *place);
-    if (!status && !place)
-        status = no_memory(error);
-    *list = (gpu_list){.base = m->packed->row_count, .end = count};
-    for (uint32_t i = 0; i < count && !status; i++) {
-        uint32_t from = tree ? bvh->order[i] : i;
-        place[from] = i;
-        if (lr_pack_rows(m->packed, &m->instances[from], sizeof *m->instances / 16) == UINT32_MAX)
-            status = no_memory(error);
-    }
-    for (uint32_t i = 0; i < m->scene->object_count && !status; i++)
-        if (m->scene->objects[i].kind == LR_MESH && count)
-            instances[i] = place[instances[i]];
-    if (tree && !status) {
-        list->nodes = lr_pack_tree(m->packed, bvh, 0);
-        m->packed->constants[LR_SPEC_INSTANCE_TREE] = 1;
-        if (list->nodes == UINT32_MAX)
-            status = no_memory(error);
-    }
-    free(place);
-    lr_bvh_destroy(bvh);
-    return status;
-}
-
-/* Packs the trees' nodes. Where no mesh is shown several times, rays go through the world's tree
- * without further ado. */
-static lr_status place_trees(mesh_packing *m, const mesh_tree *trees, uint32_t *instances,
-                             lr_error *error)
-{
-    const lr_scene *scene = m->scene;
-    lr_packed_scene *packed = m->packed;
-    const mesh_tree *world = &trees[scene->mesh_count];
-    bool shared = false;
-    for (uint32_t i = 0; i < scene->mesh_count; i++)
-        shared = shared || trees[i].bvh;
-    packed->constants[LR_SPEC_INSTANCES] = shared;
-    if (!shared && world->bvh) {
-        packed->frame.reach = fmaxf(packed->frame.reach, world->reach);
-        packed->frame.triangles.nodes = lr_pack_tree(packed, world->bvh, world->first);
-        return packed->frame.triangles.nodes == UINT32_MAX ? no_memory(error) : LR_OK;
-    }
-    lr_bvh_box *boxes = lr_alloc(scene->object_count + 1ull, sizeof *boxes);
-    lr_status status = LR_OK;
-    if (boxes && place_meshes(m, trees, instances, boxes))
-        status = pack_instances(m, boxes, instances, error);
-    else
-        status = no_memory(error);
-    free(boxes);
     return status;
 }
 
@@ -469,11 +373,11 @@ static lr_status pack_all(mesh_packing *m, mesh_tree *trees, uint32_t *instances
                        "the meshes have %llu triangles, over the limit of %u",
                        (unsigned long long)shown, LR_NODE_FIRST - first);
     if (!lr_pack_vertices(m->scene, m->users, m->shown_by, m->vertex_rows, m->packed))
-        return no_memory(error);
+        return lr_pack_no_memory(error);
     if (packed->constants[LR_SPEC_CORNERS]) {
         m->corners = lr_alloc_large(shown, sizeof *m->corners);
         if (!m->corners)
-            return no_memory(error);
+            return lr_pack_no_memory(error);
     }
     packed->frame.triangles = (gpu_list){.base = packed->row_count - 3 * first, .begin = first};
     lr_status status = pack_trees(m, trees, error);
@@ -482,9 +386,9 @@ static lr_status pack_all(mesh_packing *m, mesh_tree *trees, uint32_t *instances
     packed->frame.triangles.end = first + m->triangle_count;
     packed->frame.corners = packed->row_count;
     if (m->corners && lr_pack_rows(packed, m->corners, m->triangle_count) == UINT32_MAX)
-        return no_memory(error);
+        return lr_pack_no_memory(error);
     packed->constants[LR_SPEC_MESHES] = m->triangle_count > 0;
-    return place_trees(m, trees, instances, error);
+    return lr_pack_instances(m, trees, instances, error);
 }
 
 lr_status lr_pack_meshes(const lr_scene *scene, const uint32_t *flags, uint32_t *instances,
@@ -504,7 +408,7 @@ lr_status lr_pack_meshes(const lr_scene *scene, const uint32_t *flags, uint32_t 
     mesh_tree *trees = lr_alloc(scene->mesh_count + 1ull, sizeof *trees);
     lr_status status = LR_OK;
     if (!m.users || !m.shown_by || !m.vertex_rows || !m.instances || !trees)
-        status = no_memory(error);
+        status = lr_pack_no_memory(error);
     for (uint32_t i = 0; i < scene->object_count && !status; i++)
         if (scene->objects[i].kind == LR_MESH) {
             m.users[scene->objects[i].mesh]++;

@@ -36,12 +36,16 @@ lr_bounds lr_bounds_transform(const lr_bounds *bounds, const lr_transform *trans
 
 lr_bounds lr_mesh_bounds(const lr_mesh *mesh)
 {
-    lr_bounds out = lr_bounds_empty();
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
         const float *p = &mesh->positions[3 * (size_t)i];
-        lr_bounds_add_point(&out, (lr_vec3){(double)p[0], (double)p[1], (double)p[2]});
+        for (int k = 0; k < 3; k++) {
+            low[k] = p[k] < low[k] ? p[k] : low[k];
+            high[k] = p[k] > high[k] ? p[k] : high[k];
+        }
     }
-    return out;
+    return (lr_bounds){{(double)low[0], (double)low[1], (double)low[2]},
+                       {(double)high[0], (double)high[1], (double)high[2]}};
 }
 
 bool lr_bounds_usable(const lr_bounds *bounds)

@@ -16,15 +16,15 @@ typedef struct hasher {
 
 static void put_bytes(hasher *h, const uint8_t *bytes, size_t count)
 {
-    SHA256Update(&h->context, h->block, h->used);
-    SHA256Update(&h->context, bytes, count);
+    lr_hash_update(&h->context, h->block, h->used);
+    lr_hash_update(&h->context, bytes, count);
     h->used = 0;
 }
 
 static void put_word(hasher *h, uint64_t word, unsigned bytes)
 {
     if (h->used + bytes > sizeof h->block) {
-        SHA256Update(&h->context, h->block, h->used);
+        lr_hash_update(&h->context, h->block, h->used);
         h->used = 0;
     }
     for (unsigned i = 0; i < bytes; i++)

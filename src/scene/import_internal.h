@@ -119,9 +119,12 @@ lr_status lr_import_mesh(lr_import *import, uint32_t index, uint32_t *mesh);
 /* import_node.c: the objects. */
 lr_status lr_import_nodes(lr_import *import);
 
-/* closed.c: whether the triangles enclose a space: with vertices at equal positions joined, each
- * edge is met by exactly two triangles, once in each direction. False when memory is out. */
-bool lr_triangles_closed(const float *positions, uint32_t vertex_count, const uint32_t *triangles,
+/* closed.c: of each vertex, the first one at its position, with -0 as 0; freed by the caller. NULL
+ * when memory is out. */
+uint32_t *lr_vertices_weld(const float *positions, uint32_t count);
+/* Whether the triangles enclose a space: with vertices joined as lr_vertices_weld says, each edge
+ * is met by exactly two triangles, once in each direction. False when memory is out. */
+bool lr_triangles_closed(const uint32_t *first, uint32_t vertex_count, const uint32_t *triangles,
                          uint32_t triangle_count, bool *closed);
 
 #endif

@@ -15,11 +15,10 @@ _Static_assert(sizeof(struct aiVector3D) == 3 * sizeof(float), "assimp with floa
 
 #define UV_MAX 1e6 /* further out, a float no longer says where in the texture it is */
 
-/* All that belongs to the corner of a triangle; -0 is written as 0, so that equal ones have equal
- * bytes. */
-typedef struct corner {
-    float position[3], normal[3], uv[2], color[3];
-} corner;
+/* All that can belong to the corner of a triangle: position, normal, texture coordinates, colour.
+ * What the mesh does not have is left out. -0 is written as 0, so that equal ones have equal bytes.
+ */
+enum { CORNER_FLOATS = 3 + 3 + 2 + 3 };
 
 typedef struct counts {
     uint32_t lines, large, crossing, bad_index, bad_position, no_area, bad_normal, bad_uv;
@@ -35,7 +34,8 @@ typedef struct builder {
     uint32_t *triangles; /* indices of assimp's vertices, later of corners */
     uint32_t triangle_count;
     lr_polygon *polygon; /* working memory */
-    lr_rows corners;
+    uint32_t *first;     /* of each vertex, the first one at its position */
+    lr_rows corners;     /* of floats, each row once */
 } builder;
 
 /* ---- Triangles ----------------------------------------------------------------------------- */
@@ -127,10 +127,11 @@ static lr_status cut_faces(builder *b)
     /* The triangles, and their corners with the table that joins them, while it grows. */
     uint64_t corners = b->from->mNumVertices < 3 * total ? b->from->mNumVertices : 3 * total;
     lr_status status = lr_import_charge(
-        import, total * 3 * sizeof(uint32_t) + corners * (3 * sizeof(corner)), b->label);
+        import, total * 3 * sizeof(uint32_t) + corners * (3 * CORNER_FLOATS * sizeof(float)),
+        b->label);
     if (status)
         return status;
-    b->triangles = malloc((3 * (size_t)total + 1) * sizeof *b->triangles);
+    b->triangles = lr_alloc_large(3 * (size_t)total, sizeof *b->triangles);
     b->polygon = malloc(sizeof *b->polygon);
     if (!b->triangles || !b->polygon)
         return lr_import_no_memory(import);
@@ -140,22 +141,24 @@ static lr_status cut_faces(builder *b)
     return LR_OK;
 }
 
-/* The cross product of two edges; zero for what has no area. */
-static lr_vec3 face_normal(const struct aiMesh *mesh, const uint32_t *triangle)
-{
-    lr_vec3 a = position_of(mesh, triangle[0]);
-    return lr_vec3_cross(lr_vec3_sub(position_of(mesh, triangle[1]), a),
-                         lr_vec3_sub(position_of(mesh, triangle[2]), a));
-}
-
 /* Also false where the corners lie on one line but for rounding, a millionth of a radian. */
 static bool has_area(const struct aiMesh *mesh, const uint32_t *triangle)
 {
-    lr_vec3 a = position_of(mesh, triangle[0]);
-    lr_vec3 ab = lr_vec3_normalize(lr_vec3_sub(position_of(mesh, triangle[1]), a));
-    lr_vec3 ac = lr_vec3_normalize(lr_vec3_sub(position_of(mesh, triangle[2]), a));
-    return lr_vec3_length(lr_vec3_cross(ab, ac)) > 1e-6 &&
-           lr_vec3_length(face_normal(mesh, triangle)) > 1e-36;
+    lr_vec3 a = position_of(mesh, triangle[0]), b = position_of(mesh, triangle[1]);
+    lr_vec3 c = position_of(mesh, triangle[2]);
+    const double ab[3] = {b.x - a.x, b.y - a.y, b.z - a.z};
+    const double ac[3] = {c.x - a.x, c.y - a.y, c.z - a.z};
+    const double n[3] = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
+                         ab[0] * ac[1] - ab[1] * ac[0]};
+    double n2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+    double ab2 = ab[0] * ab[0] + ab[1] * ab[1] + ab[2] * ab[2];
+    double ac2 = ac[0] * ac[0] + ac[1] * ac[1] + ac[2] * ac[2];
+    /* Twice the limits: no rounding can make a difference. */
+    if (n2 > 4e-12 * ab2 * ac2 && n2 > 4e-72)
+        return true;
+    lr_vec3 sine = lr_vec3_cross(lr_vec3_normalize((lr_vec3){ab[0], ab[1], ab[2]}),
+                                 lr_vec3_normalize((lr_vec3){ac[0], ac[1], ac[2]}));
+    return lr_vec3_length(sine) > 1e-6 && lr_vec3_length((lr_vec3){n[0], n[1], n[2]}) > 1e-36;
 }
 
 static void drop_without_area(builder *b)
@@ -188,36 +191,65 @@ static float linear_color(const builder *b, float value)
     return (float)lr_srgb_to_linear((unsigned)(v * 255 + 0.5));
 }
 
-/* False when its normal was not usable and that of the face stands in. */
-static bool make_corner(builder *b, uint32_t vertex, lr_vec3 face, corner *out)
+/* The unit normal of a corner. False when the vertex's own was not usable and that of the face, the
+ * cross product of two edges, stands in. */
+static bool make_normal(builder *b, uint32_t vertex, const uint32_t *triangle, float out[3])
+{
+    const struct aiVector3D *n = &b->from->mNormals[vertex];
+    lr_vec3 normal = {(double)n->x, (double)n->y, (double)n->z};
+    double length = lr_vec3_length(normal);
+    bool own = length >= 1e-6 && length <= 1e6;
+    if (!own) {
+        lr_vec3 at = position_of(b->from, triangle[0]);
+        normal = lr_vec3_cross(lr_vec3_sub(position_of(b->from, triangle[1]), at),
+                               lr_vec3_sub(position_of(b->from, triangle[2]), at));
+        b->counts.bad_normal++;
+    }
+    store(out, lr_vec3_normalize(normal));
+    return own;
+}
+
+/* The corner of a triangle at one of its vertices. False when it has its normal from the triangle.
+ */
+static bool make_corner(builder *b, uint32_t vertex, const uint32_t *triangle, float *out)
 {
     const struct aiMesh *from = b->from;
     bool own_normal = true;
-    *out = (corner){0};
-    store(out->position, position_of(from, vertex));
+    store(out, position_of(from, vertex));
+    out += 3;
     if (b->normals) {
-        const struct aiVector3D *n = &from->mNormals[vertex];
-        lr_vec3 normal = {(double)n->x, (double)n->y, (double)n->z};
-        double length = lr_vec3_length(normal);
-        own_normal = length >= 1e-6 && length <= 1e6;
-        b->counts.bad_normal += !own_normal;
-        store(out->normal, lr_vec3_normalize(own_normal ? normal : face));
+        own_normal = make_normal(b, vertex, triangle, out);
+        out += 3;
     }
     if (b->uvs) {
         /* assimp counts v upwards. */
         const struct aiVector3D *uv = &from->mTextureCoords[0][vertex];
         bool usable = in_range((double)uv->x, UV_MAX) && in_range((double)uv->y, UV_MAX);
         b->counts.bad_uv += !usable;
-        out->uv[0] = usable ? uv->x + 0.0f : 0;
-        out->uv[1] = usable ? 1 - uv->y + 0.0f : 0;
+        *out++ = usable ? uv->x + 0.0f : 0;
+        *out++ = usable ? 1 - uv->y + 0.0f : 0;
     }
     if (b->colors) {
         const struct aiColor4D *c = &from->mColors[0][vertex];
-        out->color[0] = linear_color(b, c->r);
-        out->color[1] = linear_color(b, c->g);
-        out->color[2] = linear_color(b, c->b);
+        out[0] = linear_color(b, c->r);
+        out[1] = linear_color(b, c->g);
+        out[2] = linear_color(b, c->b);
     }
     return own_normal;
+}
+
+/* Of each vertex, whether it is alone at its position: then no other corner equals its own. NULL
+ * when memory is out. */
+static bool *find_alone(const builder *b)
+{
+    uint32_t count = b->from->mNumVertices;
+    bool *alone = malloc(count * sizeof *alone);
+    for (uint32_t i = 0; alone && i < count; i++) {
+        alone[i] = b->first[i] == i;
+        if (!alone[i])
+            alone[b->first[i]] = false;
+    }
+    return alone;
 }
 
 /* Makes b->triangles indices of corners. */
@@ -225,20 +257,21 @@ static lr_status join_corners(builder *b)
 {
     lr_status status = LR_ERROR_MEMORY;
     /* Of a vertex with a normal of its own, the corner it became. */
-    uint32_t *known = malloc((size_t)b->from->mNumVertices * sizeof *known);
-    if (!known)
+    uint32_t *known = lr_alloc_large(b->from->mNumVertices, sizeof *known);
+    bool *alone = find_alone(b);
+    if (!known || !alone)
         goto done;
     memset(known, 0xFF, (size_t)b->from->mNumVertices * sizeof *known);
     for (uint32_t i = 0; i < b->triangle_count; i++) {
         uint32_t *triangle = &b->triangles[3 * (size_t)i];
-        lr_vec3 face = face_normal(b->from, triangle);
+        const uint32_t vertices[3] = {triangle[0], triangle[1], triangle[2]};
         for (int k = 0; k < 3; k++) {
-            uint32_t vertex = triangle[k];
-            uint32_t index = known[vertex];
-            corner c;
+            uint32_t vertex = vertices[k], index = known[vertex];
             if (index == LR_NONE) {
-                bool own = make_corner(b, vertex, face, &c);
-                index = lr_rows_put(&b->corners, &c);
+                float row[CORNER_FLOATS];
+                bool own = make_corner(b, vertex, vertices, row);
+                index = own && alone[vertex] ? lr_rows_add(&b->corners, row)
+                                             : lr_rows_put(&b->corners, row);
                 if (index == LR_NONE)
                     goto done;
                 if (own)
@@ -250,35 +283,38 @@ static lr_status join_corners(builder *b)
     status = LR_OK;
 done:
     free(known);
+    free(alone);
     return status ? lr_import_no_memory(b->import) : LR_OK;
 }
 
 /* ---- The mesh ------------------------------------------------------------------------------ */
 
+/* Of each corner, `count` floats from *offset on, which is moved behind them; NULL when memory is
+ * out. */
+static float *take_floats(const builder *b, size_t *offset, size_t count)
+{
+    size_t corners = b->corners.count, stride = b->corners.size / sizeof(float);
+    const float *from = (const float *)b->corners.items + *offset;
+    float *out = malloc(corners * count * sizeof *out);
+    for (size_t i = 0; out && i < corners; i++)
+        memcpy(&out[count * i], &from[stride * i], count * sizeof *out);
+    *offset += count;
+    return out;
+}
+
 static lr_status fill_mesh(builder *b, lr_mesh *mesh)
 {
-    size_t count = b->corners.count;
-    const corner *corners = b->corners.items;
+    size_t offset = 0;
     mesh->name = lr_string_copy(b->label, strlen(b->label));
-    mesh->positions = malloc(count * 3 * sizeof(float));
-    mesh->normals = b->normals ? malloc(count * 3 * sizeof(float)) : NULL;
-    mesh->uvs = b->uvs ? malloc(count * 2 * sizeof(float)) : NULL;
-    mesh->colors = b->colors ? malloc(count * 3 * sizeof(float)) : NULL;
+    mesh->positions = take_floats(b, &offset, 3);
+    mesh->normals = b->normals ? take_floats(b, &offset, 3) : NULL;
+    mesh->uvs = b->uvs ? take_floats(b, &offset, 2) : NULL;
+    mesh->colors = b->colors ? take_floats(b, &offset, 3) : NULL;
     mesh->triangles = b->triangles;
     b->triangles = NULL;
     if (!mesh->name || !mesh->positions || (b->normals && !mesh->normals) ||
         (b->uvs && !mesh->uvs) || (b->colors && !mesh->colors))
         return lr_import_no_memory(b->import);
-    for (size_t i = 0; i < count; i++) {
-        const corner *c = &corners[i];
-        memcpy(&mesh->positions[3 * i], c->position, sizeof c->position);
-        if (mesh->normals)
-            memcpy(&mesh->normals[3 * i], c->normal, sizeof c->normal);
-        if (mesh->uvs)
-            memcpy(&mesh->uvs[2 * i], c->uv, sizeof c->uv);
-        if (mesh->colors)
-            memcpy(&mesh->colors[3 * i], c->color, sizeof c->color);
-    }
     mesh->vertex_count = b->corners.count;
     mesh->triangle_count = b->triangle_count;
     return LR_OK;
@@ -336,10 +372,11 @@ static lr_status convert(builder *b, uint32_t index, uint32_t *mesh)
     lr_import *import = b->import;
     bool closed = false;
     lr_status status = cut_faces(b);
+    if (!status && !(b->first = lr_vertices_weld(&b->from->mVertices[0].x, b->from->mNumVertices)))
+        status = lr_import_no_memory(import);
     /* Before the triangles without area go: without them the seams that they fill would be open. */
-    if (!status && b->triangle_count > 0 &&
-        !lr_triangles_closed(&b->from->mVertices[0].x, b->from->mNumVertices, b->triangles,
-                             b->triangle_count, &closed))
+    if (!status && !lr_triangles_closed(b->first, b->from->mNumVertices, b->triangles,
+                                        b->triangle_count, &closed))
         status = lr_import_no_memory(import);
     if (!status)
         drop_without_area(b);
@@ -380,11 +417,13 @@ lr_status lr_import_mesh(lr_import *import, uint32_t index, uint32_t *mesh)
         .normals = from->mNormals && import->kind != LR_IMPORT_STL,
         .uvs = from->mTextureCoords[0] && from->mNumUVComponents[0] >= 2,
         .colors = from->mColors[0] != NULL,
-        .corners = {.size = sizeof(corner)},
     };
+    b.corners.size =
+        (3 + (b.normals ? 3 : 0) + (b.uvs ? 2 : 0) + (b.colors ? 3 : 0)) * sizeof(float);
     lr_status status = convert(&b, index, mesh);
     free(b.triangles);
     free(b.polygon);
+    free(b.first);
     lr_rows_free(&b.corners);
     return status;
 }

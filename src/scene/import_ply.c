@@ -221,16 +221,52 @@ static lr_status read_header(reader *r)
 
 /* ---- Numbers ------------------------------------------------------------------------------- */
 
+/* Whole numbers of up to 15 digits, which most of the file is; 0 for what is none of these, and the
+ * length of their text otherwise. */
+static size_t read_digits(const char *text, double *value)
+{
+    uint64_t number = 0;
+    size_t used = 0;
+    for (; text[used] >= '0' && text[used] <= '9' && used < 15; used++)
+        number = 10 * number + (uint64_t)(text[used] - '0');
+    *value = (double)number;
+    return text[used] && strchr(" \r\n", text[used]) ? used : 0;
+}
+
 static lr_status read_text_number(reader *r, double *value)
 {
     const char *start = r->import->bytes + r->at;
-    char *end;
+    start += *start == ' ' || *start == '\n';
+    size_t digits = read_digits(start, value);
+    char *end = (char *)start + digits;
     /* The file ends with a NUL, at which this stops. */
-    *value = strtod_l(start, &end, r->locale);
+    if (digits == 0)
+        *value = strtod_l(start, &end, r->locale);
     if (end == start || (*end && !isspace((unsigned char)*end)))
         return row_error(r, "is no number, or the file is cut short");
     r->at = (size_t)(end - r->import->bytes);
     return LR_OK;
+}
+
+static inline uint64_t load_bytes(const unsigned char *b, uint32_t size, bool big)
+{
+    uint16_t two;
+    uint32_t four;
+    uint64_t eight;
+    bool swap = big != (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__);
+    switch (size) {
+    case 1:
+        return *b;
+    case 2:
+        memcpy(&two, b, sizeof two);
+        return swap ? __builtin_bswap16(two) : two;
+    case 4:
+        memcpy(&four, b, sizeof four);
+        return swap ? __builtin_bswap32(four) : four;
+    default:
+        memcpy(&eight, b, sizeof eight);
+        return swap ? __builtin_bswap64(eight) : eight;
+    }
 }
 
 static lr_status read_binary_number(reader *r, ply_type type, double *value)
@@ -240,9 +276,7 @@ static lr_status read_binary_number(reader *r, ply_type type, double *value)
         return row_error(r, "the file is cut short here");
     const unsigned char *b = (const unsigned char *)r->import->bytes + r->at;
     r->at += size;
-    uint64_t bits = 0;
-    for (uint32_t i = 0; i < size; i++)
-        bits |= (uint64_t)b[r->format == BIG ? size - 1 - i : i] << 8 * i;
+    uint64_t bits = load_bytes(b, size, r->format == BIG);
     uint32_t low = (uint32_t)bits;
     float single;
     switch (type) {
@@ -263,7 +297,7 @@ static lr_status read_binary_number(reader *r, ply_type type, double *value)
         *value = (int32_t)bits;
         break;
     default:
-        *value = (double)bits;
+        *value = low;
         break;
     }
     return LR_OK;
@@ -276,16 +310,63 @@ static lr_status read_number(reader *r, ply_type type, double *value)
 
 /* ---- Elements ------------------------------------------------------------------------------ */
 
+/* Room for `more` corners. */
+static bool reserve_corners(struct lr_ply *ply, uint64_t more)
+{
+    uint64_t wanted = ply->index_count + more;
+    if (wanted <= ply->index_capacity)
+        return true;
+    if (wanted < 2 * (uint64_t)ply->index_capacity)
+        wanted = 2 * (uint64_t)ply->index_capacity;
+    if (wanted > UINT32_MAX)
+        return false;
+    uint32_t *grown = realloc(ply->indices, wanted * sizeof *grown);
+    if (!grown)
+        return false;
+    ply->indices = grown;
+    ply->index_capacity = (uint32_t)wanted;
+    return true;
+}
+
 /* A corner that is no index of a vertex becomes UINT32_MAX, which no vertex has. */
-static lr_status add_corner(reader *r, double value)
+static uint32_t corner_of(double value)
+{
+    return value >= 0 && value < (double)UINT32_MAX ? (uint32_t)value : UINT32_MAX;
+}
+
+/* As many corners as a list promises, where its numbers have 4 bytes and are there. */
+static bool read_whole_corners(reader *r, const property *p, uint32_t *out, uint64_t count)
+{
+    const unsigned char *b = (const unsigned char *)r->import->bytes + r->at;
+    bool is_signed = p->type == INT32;
+    if (r->format == TEXT || (!is_signed && p->type != UINT32) ||
+        count > (r->import->size - r->at) / 4)
+        return false;
+    for (uint64_t i = 0; i < count; i++) {
+        uint32_t value = (uint32_t)load_bytes(b + 4 * i, 4, r->format == BIG);
+        out[i] = is_signed && value > INT32_MAX ? UINT32_MAX : value;
+    }
+    r->at += 4 * count;
+    return true;
+}
+
+static lr_status read_corners(reader *r, const property *p, struct aiFace *face, uint64_t count)
 {
     struct lr_ply *ply = r->ply;
-    if (!lr_array_reserve((void **)&ply->indices, ply->index_count, &ply->index_capacity,
-                          sizeof *ply->indices))
+    if (!reserve_corners(ply, count))
         return lr_import_no_memory(r->import);
-    bool valid = value >= 0 && value < (double)UINT32_MAX;
-    ply->indices[ply->index_count++] = valid ? (uint32_t)value : UINT32_MAX;
-    return LR_OK;
+    uint32_t *out = &ply->indices[ply->index_count];
+    lr_status status = LR_OK;
+    if (!read_whole_corners(r, p, out, count))
+        for (uint64_t i = 0; !status && i < count; i++) {
+            double value;
+            status = read_number(r, p->type, &value);
+            if (!status)
+                out[i] = corner_of(value);
+        }
+    ply->index_count += (uint32_t)count;
+    face->mNumIndices += (unsigned)count;
+    return status;
 }
 
 static lr_status read_list(reader *r, const property *p, struct aiFace *face)
@@ -294,13 +375,10 @@ static lr_status read_list(reader *r, const property *p, struct aiFace *face)
     lr_status status = read_number(r, p->count_type, &length);
     if (!status && !(length >= 0 && length <= (double)(r->import->size - r->at)))
         status = row_error(r, "a list that is longer than the file");
-    for (uint64_t i = 0; !status && i < (uint64_t)length; i++) {
-        status = read_number(r, p->type, &value);
-        if (!status && face && p->is_corners)
-            status = add_corner(r, value);
-    }
     if (!status && face && p->is_corners)
-        face->mNumIndices += (unsigned)length;
+        return read_corners(r, p, face, (uint64_t)length);
+    for (uint64_t i = 0; !status && i < (uint64_t)length; i++)
+        status = read_number(r, p->type, &value);
     return status;
 }
 
@@ -367,18 +445,23 @@ static lr_status prepare(reader *r, const element *e, bool vertices, bool faces)
     bool good = true;
     if (vertices) {
         mesh->mNumVertices = (unsigned)count;
-        good = (mesh->mVertices = lr_alloc(count, sizeof *mesh->mVertices)) != NULL;
+        good = (mesh->mVertices = lr_alloc_large(count, sizeof *mesh->mVertices)) != NULL;
         if (r->has[NX] && r->has[NY] && r->has[NZ])
-            good &= (mesh->mNormals = lr_alloc(count, sizeof *mesh->mNormals)) != NULL;
+            good &= (mesh->mNormals = lr_alloc_large(count, sizeof *mesh->mNormals)) != NULL;
         if (r->has[U] && r->has[V])
-            good &= (mesh->mTextureCoords[0] = lr_alloc(count, sizeof(struct aiVector3D))) != NULL;
+            good &= (mesh->mTextureCoords[0] = lr_alloc_large(count, sizeof(struct aiVector3D))) !=
+                    NULL;
         if (r->has[RED] && r->has[GREEN] && r->has[BLUE])
-            good &= (mesh->mColors[0] = lr_alloc(count, sizeof(struct aiColor4D))) != NULL;
+            good &= (mesh->mColors[0] = lr_alloc_large(count, sizeof(struct aiColor4D))) != NULL;
         mesh->mNumUVComponents[0] = 2;
     }
     if (faces) {
         mesh->mNumFaces = (unsigned)count;
-        good = (mesh->mFaces = lr_alloc(count, sizeof *mesh->mFaces)) != NULL;
+        good = (mesh->mFaces = lr_alloc_large(count, sizeof *mesh->mFaces)) != NULL;
+        /* Most faces are triangles. */
+        if (good && count <= UINT32_MAX / 3 &&
+            (r->ply->indices = lr_alloc_large(3 * count, sizeof *r->ply->indices)))
+            r->ply->index_capacity = 3 * (uint32_t)count;
     }
     return good ? LR_OK : lr_import_no_memory(import);
 }
@@ -393,7 +476,10 @@ static lr_status read_rows(reader *r, const element *e)
     lr_status status = e->count ? prepare(r, e, vertices, faces) : LR_OK;
     for (r->row = 0; !status && r->row < e->count; r->row++) {
         double values[SLOTS + 1] = {0};
-        status = read_row(r, e, values, faces ? &mesh->mFaces[r->row] : NULL);
+        struct aiFace *face = faces ? &mesh->mFaces[r->row] : NULL;
+        if (face)
+            *face = (struct aiFace){0};
+        status = read_row(r, e, values, face);
         if (!status && vertices)
             store_vertex(mesh, r->row, values);
         if (!status && r->row % 65536 == 65535)

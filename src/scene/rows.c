@@ -41,25 +41,35 @@ static bool grow_slots(lr_rows *rows)
     grown.slots = lr_alloc(grown.slot_count, sizeof *grown.slots);
     if (!grown.slots)
         return false;
-    for (uint32_t i = 0; i < rows->count; i++)
-        *find(&grown, row_at(rows, i)) = i + 1;
+    for (uint32_t i = 0; i < rows->slot_count; i++)
+        if (rows->slots[i])
+            *find(&grown, row_at(rows, rows->slots[i] - 1)) = rows->slots[i];
     free(rows->slots);
     *rows = grown;
     return true;
 }
 
+uint32_t lr_rows_add(lr_rows *rows, const void *row)
+{
+    if (!lr_array_reserve(&rows->items, rows->count, &rows->capacity, rows->size))
+        return UINT32_MAX;
+    memcpy((char *)rows->items + rows->count * rows->size, row, rows->size);
+    return rows->count++;
+}
+
 uint32_t lr_rows_put(lr_rows *rows, const void *row)
 {
-    if (rows->count >= rows->slot_count / 2 && !grow_slots(rows))
+    if (rows->slots_used >= rows->slot_count / 2 && !grow_slots(rows))
         return UINT32_MAX;
     uint32_t *slot = find(rows, row);
     if (*slot)
         return *slot - 1;
-    if (!lr_array_reserve(&rows->items, rows->count, &rows->capacity, rows->size))
-        return UINT32_MAX;
-    memcpy((char *)rows->items + rows->count * rows->size, row, rows->size);
-    *slot = ++rows->count;
-    return rows->count - 1;
+    uint32_t index = lr_rows_add(rows, row);
+    if (index != UINT32_MAX) {
+        *slot = index + 1;
+        rows->slots_used++;
+    }
+    return index;
 }
 
 void lr_rows_free(lr_rows *rows)

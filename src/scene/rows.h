@@ -12,12 +12,14 @@ typedef struct lr_rows {
     uint32_t count;
     uint32_t capacity;
     uint32_t *slots; /* a hash table of indices, 0 for none, otherwise the index + 1 */
-    uint32_t slot_count;
+    uint32_t slot_count, slots_used;
 } lr_rows;
 
 /* The index of the row with these bytes, which is added when there is none; UINT32_MAX when memory
  * is out. Padding counts, so rows have none. */
 uint32_t lr_rows_put(lr_rows *rows, const void *row);
+/* Adds a row without looking for it; lr_rows_put will not find it either. */
+uint32_t lr_rows_add(lr_rows *rows, const void *row);
 void lr_rows_free(lr_rows *rows);
 
 #endif

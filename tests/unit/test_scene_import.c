@@ -185,6 +185,42 @@ static void test_closed(void **state)
     }
 }
 
+/* Corners are joined where all that they have is equal, also with 0 and -0, and stand in the order
+ * of the triangles; vertices without a usable normal have one corner for each normal that stands
+ * in. */
+static void test_joined(void **state)
+{
+    (void)state;
+    put_text("j.ply",
+             "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\n"
+             "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+             "property float s\nproperty float t\nelement face 5\n"
+             "property list uchar int vertex_indices\nend_header\n"
+             "9 9 9 0 0 1 0 0\n"  /* of no triangle */
+             "1 0 0 0 0 1 0 0\n"  /* 1 */
+             "0 1 0 0 0 1 0 0\n"  /* 2, alone */
+             "0 0 0 0 0 1 0 0\n"  /* 3 */
+             "1 0 -0 0 0 1 0 0\n" /* 4, as 1 */
+             "1 0 0 0 0 1 0 1\n"  /* 5, as 1 but for t */
+             "-0 0 0 0 0 1 0 0\n" /* 6, as 3 */
+             "0 0 1 0 0 0 0 0\n"  /* 7, alone, without a normal */
+             "3 3 1 2\n3 6 5 2\n3 6 7 4\n3 4 7 3\n3 2 7 3\n");
+    lr_scene *scene = import_good("j.ply");
+    const lr_mesh *mesh = &scene->meshes[0];
+    const uint32_t corners[] = {0, 1, 2, 0, 3, 2, 0, 4, 1, 1, 5, 0, 2, 6, 0};
+    const float positions[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0},
+                                  {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    assert_int_equal(mesh->triangle_count, 5);
+    assert_int_equal(mesh->vertex_count, 7);
+    assert_memory_equal(mesh->triangles, corners, sizeof corners);
+    assert_memory_equal(mesh->positions, positions, sizeof positions);
+    assert_near((double)mesh->normals[3 * 4 + 1], 1, 0);
+    assert_near((double)mesh->normals[3 * 5 + 1], -1, 0);
+    assert_near((double)mesh->normals[3 * 6], 1, 0);
+    assert_true(has_note(scene, "mesh 0: 3 corners have no usable normal"));
+    lr_scene_destroy(scene);
+}
+
 static void test_ply(void **state)
 {
     (void)state;
@@ -199,6 +235,7 @@ static void test_ply(void **state)
     lr_scene *scene = import_good("c.ply");
     const lr_mesh *mesh = &scene->meshes[0];
     assert_int_equal(mesh->triangle_count, 2);
+    assert_int_equal(mesh->vertex_count, 4);
     for (size_t i = 0; i < mesh->vertex_count; i++) { /* also where the file's are no use */
         assert_near((double)mesh->normals[3 * i], 0, 0);
         assert_near((double)mesh->normals[3 * i + 2], 1, 0);
@@ -355,11 +392,17 @@ static void test_shared_materials(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_gltf_nodes), cmocka_unit_test(test_gltf_material),
-        cmocka_unit_test(test_gltf_view),  cmocka_unit_test(test_obj),
-        cmocka_unit_test(test_closed),     cmocka_unit_test(test_ply),
-        cmocka_unit_test(test_texture),    cmocka_unit_test(test_mesh_key),
-        cmocka_unit_test(test_shared),     cmocka_unit_test(test_shared_materials),
+        cmocka_unit_test(test_gltf_nodes),
+        cmocka_unit_test(test_gltf_material),
+        cmocka_unit_test(test_gltf_view),
+        cmocka_unit_test(test_obj),
+        cmocka_unit_test(test_closed),
+        cmocka_unit_test(test_joined),
+        cmocka_unit_test(test_ply),
+        cmocka_unit_test(test_texture),
+        cmocka_unit_test(test_mesh_key),
+        cmocka_unit_test(test_shared),
+        cmocka_unit_test(test_shared_materials),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -1,5 +1,7 @@
 /* Files of other programs that are broken or mean harm: one clear message, or a note and the rest
  * of the file; never a crash, a hang, or bytes of files elsewhere. */
+#include <time.h>
+
 #include "import_tests.h"
 
 #define PLY_HEAD(vertices, faces)                                                                  \
@@ -49,6 +51,32 @@ static void test_numbers(void **state)
     scene = import_good("flat.gltf");
     assert_int_equal(scene->object_count, 1);
     assert_true(has_note(scene, "node \"flat\": left out"));
+    lr_scene_destroy(scene);
+}
+
+/* Equal positions that are no numbers, which no comparison finds equal, take no longer than others
+ * (once: the square of their number, a minute here). */
+static void test_many_nans(void **state)
+{
+    (void)state;
+    enum { COUNT = 400000 };
+    const char head[] = "ply\nformat binary_big_endian 1.0\nelement face 1\n"
+                        "property list uchar uchar vertex_indices\nelement vertex 400003\n"
+                        "property float x\nproperty float y\nproperty float z\nend_header\n"
+                        "\3\0\1\2\0\0\0\0\0\0\0\0\0\0\0\0"
+                        "\x3F\x80\0\0\0\0\0\0\0\0\0\0"
+                        "\0\0\0\0\x3F\x80\0\0\0\0\0";
+    const size_t size = sizeof head + COUNT * 3 * sizeof(float);
+    char *bytes = malloc(size);
+    assert_non_null(bytes);
+    memset(bytes, 0xFF, size);
+    memcpy(bytes, head, sizeof head);
+    put_bytes("nans.ply", bytes, size);
+    free(bytes);
+    clock_t start = clock();
+    lr_scene *scene = import_good("nans.ply");
+    assert_true((double)(clock() - start) / CLOCKS_PER_SEC < 15);
+    assert_int_equal(scene->meshes[0].vertex_count, 3);
     lr_scene_destroy(scene);
 }
 
@@ -283,10 +311,10 @@ static void test_interrupted(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_indices),     cmocka_unit_test(test_numbers),
-        cmocka_unit_test(test_counts),      cmocka_unit_test(test_cut_short),
-        cmocka_unit_test(test_gltf),        cmocka_unit_test(test_paths),
-        cmocka_unit_test(test_interrupted),
+        cmocka_unit_test(test_indices),   cmocka_unit_test(test_numbers),
+        cmocka_unit_test(test_many_nans), cmocka_unit_test(test_counts),
+        cmocka_unit_test(test_cut_short), cmocka_unit_test(test_gltf),
+        cmocka_unit_test(test_paths),     cmocka_unit_test(test_interrupted),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
