@@ -49,11 +49,11 @@ typedef struct lr_board {
     bool screenshot; /* wished for */
     lr_session *next;
     lr_shown shown;
-    lr_picture taken; /* a screenshot that waits for the loader to write it */
-    bool lost;        /* the renderer has no session any more: the device failed */
-    lr_error failure; /* why */
-    FILE *events;     /* a log for tests, or NULL; see lr_board_log */
-    double start;     /* of its clock */
+    lr_picture taken;             /* a screenshot that waits for the loader to write it */
+    bool lost;                    /* the renderer has no session any more: the device failed */
+    lr_error failure;             /* why */
+    FILE *events;                 /* a log for tests, or NULL; see lr_board_log */
+    double start;                 /* of its clock */
     uint32_t validation_messages; /* of all devices that were closed, and the first of them */
     char validation[1024];
     void (*notify_loader)(void *loader);

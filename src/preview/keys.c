@@ -174,7 +174,8 @@ enum { KEY_COUNT = sizeof keys / sizeof *keys };
 static void choose_camera(lr_view *v, uint32_t number)
 {
     if (number >= v->camera_count) {
-        lr_view_say(v, "the scene has %u camera%s", v->camera_count, v->camera_count > 1 ? "s" : "");
+        lr_view_say(v, "the scene has %u camera%s", v->camera_count,
+                    v->camera_count > 1 ? "s" : "");
         return;
     }
     v->camera = number;

@@ -131,6 +131,7 @@ static void load(lr_loader *l)
     lr_file_list files = {0};
     lr_load_options options = l->load;
     options.files = &files;
+    options.previous = l->scene->scene;
     options.progress = keep_loading;
     options.user = l;
     lr_status status = lr_scene_load(l->path, &options, &scene, &report, &error);
@@ -178,8 +179,7 @@ static void build(lr_loader *l)
     lr_device_desc device = l->device;
     lr_board_unlock(b);
     set_busy(l, true);
-    lr_status status =
-        lr_session_create(l->scene, &device, l->window, &settings, &session, &error);
+    lr_status status = lr_session_create(l->scene, &device, l->window, &settings, &session, &error);
     lr_session *unseen = NULL;
     lr_board_lock(b);
     bool first = b->shown.picture == 0;
@@ -283,6 +283,11 @@ static void save_camera(lr_loader *l, uint32_t index, const lr_camera *camera)
         return;
     }
     lr_follow_forget_own_write(l->follow, l->path);
+    lr_board_lock(l->board);
+    l->news.saved++;
+    l->news.saved_index = index;
+    l->news.saved_camera = *camera;
+    lr_board_unlock(l->board);
     say(l, "saved the camera in %s", l->path);
 }
 

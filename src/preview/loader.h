@@ -21,9 +21,12 @@ typedef struct lr_news {
     uint32_t camera_count;
     uint32_t samples, depth, seed;
     double exposure;
-    double size;     /* of the scene: the diagonal of its bounds, 0 where there are none */
-    uint64_t report; /* grows with every change of */
-    char *errors;    /* what is wrong with the file; NULL: nothing */
+    double size;    /* of the scene: the diagonal of its bounds, 0 where there are none */
+    uint64_t saved; /* grows with every camera that was saved: number saved_index is now */
+    uint32_t saved_index;
+    lr_camera saved_camera;
+    uint64_t report;  /* grows with every change of */
+    char *errors;     /* what is wrong with the file; NULL: nothing */
     uint64_t message; /* grows with every new */
     char text[1200];
     bool busy;  /* another scene or device is being made ready */

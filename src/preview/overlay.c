@@ -159,9 +159,8 @@ uint32_t *lr_overlay_draw(const lr_overlay *overlay, uint32_t width, uint32_t he
     uint32_t *pixels = lr_alloc((size_t)width * height, sizeof *pixels);
     if (!pixels)
         return NULL;
-    cairo_surface_t *surface =
-        cairo_image_surface_create_for_data((unsigned char *)pixels, CAIRO_FORMAT_ARGB32,
-                                            (int)width, (int)height, (int)(4 * width));
+    cairo_surface_t *surface = cairo_image_surface_create_for_data(
+        (unsigned char *)pixels, CAIRO_FORMAT_ARGB32, (int)width, (int)height, (int)(4 * width));
     cairo_t *cairo = cairo_create(surface);
     cairo_select_font_face(cairo, "monospace", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     for (uint32_t i = 0; i < overlay->line_count; i++)

@@ -14,10 +14,10 @@ typedef struct lr_preview_options {
      * not change later. */
     lr_render_options render;
     bool has_exposure;
-    double exposure;        /* in stops */
-    const char *screenshot; /* name of screenshots; NULL: as the scene is called */
+    double exposure;           /* in stops */
+    const char *screenshot;    /* name of screenshots; NULL: as the scene is called */
     bool (*interrupted)(void); /* asked some times a second; true closes the window */
-    FILE *events; /* NULL, or where tests read what happens */
+    FILE *events;              /* NULL, or where tests read what happens */
     /* Text that is meant for the terminal: the camera's when it is asked for. */
     void (*print)(const char *text);
 } lr_preview_options;
@@ -27,8 +27,8 @@ typedef struct lr_preview_options {
 lr_status lr_preview_open(lr_error *error);
 void lr_preview_close(void);
 
-/* Shows the scene, which it takes over, until the window is closed. `files` are those that the scene
- * was read from. LR_ERROR_DEVICE when there is no device, or it fails again and again;
+/* Shows the scene, which it takes over, until the window is closed. `files` are those that the
+ * scene was read from. LR_ERROR_DEVICE when there is no device, or it fails again and again;
  * LR_ERROR_INTERRUPTED. */
 lr_status lr_preview_run(lr_scene *scene, const lr_file_list *files,
                          const lr_preview_options *options, lr_error *error);

@@ -9,8 +9,8 @@
 
 #define STEP_SECONDS 0.02
 
-/* A picture that only becomes finer is shown so often, or more seldom where showing takes more than a
- * tenth of the time; and the window is told so often. */
+/* A picture that only becomes finer is shown so often, or more seldom where showing takes more than
+ * a tenth of the time; and the window is told so often. */
 #define SHOW_SECONDS 0.1
 #define SHOW_SHARE 0.1
 #define TELL_SECONDS 0.25
@@ -45,8 +45,8 @@ static bool idle(const lr_renderer *r)
     return !visible(r) || (r->session->progressive->finished && !r->show);
 }
 
-/* Takes what is new on the board; false when it says to quit. A session that is replaced is left for
- * the caller to destroy. */
+/* Takes what is new on the board; false when it says to quit. A session that is replaced is left
+ * for the caller to destroy. */
 static bool take_news(lr_renderer *r, lr_session **old)
 {
     lr_board *b = r->board;

@@ -41,8 +41,7 @@ lr_status lr_session_create(lr_shared_scene *shared, const lr_device_desc *desc,
     s->shared = lr_shared_scene_take(shared);
     lr_status status = lr_device_open_window(desc, window, &s->device, error);
     if (!status)
-        status =
-            lr_progressive_create(s->device, shared->scene, settings, &s->progressive, error);
+        status = lr_progressive_create(s->device, shared->scene, settings, &s->progressive, error);
     if (!status)
         status = lr_display_create(s->device, &s->display, error);
     if (status) {

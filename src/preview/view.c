@@ -102,8 +102,8 @@ static bool fly(lr_view *v, double seconds)
     if (direction[0] == 0 && direction[1] == 0 && direction[2] == 0)
         return false;
     double way = lr_camera_fly_speed(&v->wish.camera, v->scene_size) * seconds;
-    v->wish.camera = lr_camera_fly(v->wish.camera, direction[0] * way, direction[1] * way,
-                                   direction[2] * way);
+    v->wish.camera =
+        lr_camera_fly(v->wish.camera, direction[0] * way, direction[1] * way, direction[2] * way);
     lr_view_wish_picture(v);
     return true;
 }
@@ -177,6 +177,12 @@ static void take_news(lr_view *v)
         adopt_cameras(v, news);
         v->scene_size = news->size;
         lr_view_wish_picture(v);
+    }
+    if (news->saved != v->seen_saved) {
+        v->seen_saved = news->saved;
+        char *name = v->cameras[news->saved_index].name;
+        v->cameras[news->saved_index] = news->saved_camera;
+        v->cameras[news->saved_index].name = name;
     }
     if (news->report != v->seen_report) {
         v->seen_report = news->report;

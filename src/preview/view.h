@@ -13,16 +13,16 @@ typedef struct lr_view {
     lr_board board;
     lr_renderer renderer;
     lr_loader loader;
-    lr_wish wish;      /* a copy of the board's */
-    bool wish_changed; /* ... that is ahead of it */
-    lr_camera *cameras; /* the scene's */
+    lr_wish wish;                  /* a copy of the board's */
+    bool wish_changed;             /* ... that is ahead of it */
+    lr_camera *cameras;            /* the scene's */
     uint32_t camera_count, camera; /* and which of them this began with */
     double scene_size;             /* the diagonal of its bounds, 0: unknown */
     struct {
         uint32_t samples, depth, seed;
         double exposure;
     } file; /* what the scene file says */
-    uint64_t seen_scene, seen_report, seen_message;
+    uint64_t seen_scene, seen_saved, seen_report, seen_message;
     char *errors;
     char message[1200];
     double message_until, last_time;

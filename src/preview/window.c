@@ -6,8 +6,8 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#define CLICK_RADIUS 3.0   /* points that a hand may move while it clicks */
-#define CLICK_TWICE 0.35   /* seconds */
+#define CLICK_RADIUS 3.0 /* points that a hand may move while it clicks */
+#define CLICK_TWICE 0.35 /* seconds */
 #define SIZE_MIN 64
 
 static VkResult create_surface(void *window, VkInstance instance, VkSurfaceKHR *surface)
@@ -79,11 +79,16 @@ static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mo
         int glfw;
         uint32_t key;
     } keys[] = {
-        {GLFW_KEY_ESCAPE, LR_KEY_ESCAPE},       {GLFW_KEY_LEFT, LR_KEY_LEFT},
-        {GLFW_KEY_RIGHT, LR_KEY_RIGHT},         {GLFW_KEY_UP, LR_KEY_UP},
-        {GLFW_KEY_DOWN, LR_KEY_DOWN},           {GLFW_KEY_PAGE_UP, LR_KEY_PAGE_UP},
-        {GLFW_KEY_PAGE_DOWN, LR_KEY_PAGE_DOWN}, {GLFW_KEY_HOME, LR_KEY_HOME},
-        {GLFW_KEY_F1, LR_KEY_F1},               {GLFW_KEY_F11, LR_KEY_F11},
+        {GLFW_KEY_ESCAPE, LR_KEY_ESCAPE},
+        {GLFW_KEY_LEFT, LR_KEY_LEFT},
+        {GLFW_KEY_RIGHT, LR_KEY_RIGHT},
+        {GLFW_KEY_UP, LR_KEY_UP},
+        {GLFW_KEY_DOWN, LR_KEY_DOWN},
+        {GLFW_KEY_PAGE_UP, LR_KEY_PAGE_UP},
+        {GLFW_KEY_PAGE_DOWN, LR_KEY_PAGE_DOWN},
+        {GLFW_KEY_HOME, LR_KEY_HOME},
+        {GLFW_KEY_F1, LR_KEY_F1},
+        {GLFW_KEY_F11, LR_KEY_F11},
         {GLFW_KEY_F12, LR_KEY_F12},
     };
     (void)scancode, (void)mods;
@@ -161,9 +166,10 @@ lr_status lr_window_system_open(lr_error *error)
     if (glfwInit())
         return LR_OK;
     glfwGetError(&why);
-    return lr_fail(error, LR_ERROR_DEVICE,
-                   "no display to open a window on (%s); lavaray render SCENE -o FILE.png needs none",
-                   why ? why : "GLFW does not say why");
+    return lr_fail(
+        error, LR_ERROR_DEVICE,
+        "no display to open a window on (%s); lavaray render SCENE -o FILE.png needs none",
+        why ? why : "GLFW does not say why");
 }
 
 void lr_window_system_close(void)
@@ -289,9 +295,8 @@ void lr_window_toggle_full_screen(lr_window *window)
 
 void lr_window_flight(const lr_window *window, double direction[3])
 {
-    static const int keys[3][2] = {{GLFW_KEY_A, GLFW_KEY_D},
-                                   {GLFW_KEY_Q, GLFW_KEY_E},
-                                   {GLFW_KEY_S, GLFW_KEY_W}};
+    static const int keys[3][2] = {
+        {GLFW_KEY_A, GLFW_KEY_D}, {GLFW_KEY_Q, GLFW_KEY_E}, {GLFW_KEY_S, GLFW_KEY_W}};
     for (int i = 0; i < 3; i++) {
         direction[i] = 0;
         if (window->button != LR_BUTTON_RIGHT)

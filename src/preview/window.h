@@ -7,7 +7,12 @@
 
 typedef struct GLFWwindow GLFWwindow;
 
-typedef enum lr_button { LR_BUTTON_NONE, LR_BUTTON_LEFT, LR_BUTTON_MIDDLE, LR_BUTTON_RIGHT } lr_button;
+typedef enum lr_button {
+    LR_BUTTON_NONE,
+    LR_BUTTON_LEFT,
+    LR_BUTTON_MIDDLE,
+    LR_BUTTON_RIGHT
+} lr_button;
 
 /* Keys that write nothing. Those that do are their characters. */
 enum {

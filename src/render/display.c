@@ -30,8 +30,8 @@ static uint32_t palette_color(uint32_t index)
 static lr_status warm_up(lr_display *d, lr_error *error)
 {
     lr_buffer film = {0};
-    lr_status status = lr_buffer_create(d->device, LR_BUFFER_STORAGE, 4 * LR_FILM_WORDS,
-                                        "the film", &film, error);
+    lr_status status =
+        lr_buffer_create(d->device, LR_BUFFER_STORAGE, 4 * LR_FILM_WORDS, "the film", &film, error);
     if (!status)
         status = lr_commands_begin(d->device, error);
     if (!status) {

@@ -376,8 +376,8 @@ static void test_load(void **state)
     assert_int_equal(status, LR_ERROR_FILE);
     assert_null(scene);
     assert_null(report);
-    status =
-        lr_scene_load(SOURCE_DIR "/tests/fuzz/corpus/scene/readme.yaml", NULL, &scene, &report, &error);
+    status = lr_scene_load(SOURCE_DIR "/tests/fuzz/corpus/scene/readme.yaml", NULL, &scene, &report,
+                           &error);
     assert_int_equal(status, LR_OK);
     assert_int_equal(scene->object_count, 2);
     lr_scene_destroy(scene);
