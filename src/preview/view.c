@@ -178,7 +178,7 @@ static void take_news(lr_view *v)
         v->scene_size = news->size;
         lr_view_wish_picture(v);
     }
-    if (news->saved != v->seen_saved) {
+    if (news->saved != v->seen_saved && news->saved_index < v->camera_count) {
         v->seen_saved = news->saved;
         char *name = v->cameras[news->saved_index].name;
         v->cameras[news->saved_index] = news->saved_camera;
