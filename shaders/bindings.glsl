@@ -37,6 +37,7 @@ layout(constant_id = LR_SPEC_INSTANCES) const bool has_instances = true;
 layout(constant_id = LR_SPEC_INSTANCE_TREE) const bool has_instance_tree = true;
 layout(constant_id = LR_SPEC_ONE_SIDED) const bool has_one_sided = true;
 layout(constant_id = LR_SPEC_CORNERS) const bool has_corners = true;
+layout(constant_id = LR_SPEC_INSPECT) const bool has_inspect = true;
 
 layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame; };
 layout(set = 0, binding = LR_BIND_SCENE_TEXEL) uniform usamplerBuffer scene_texels;

@@ -76,7 +76,8 @@ typedef struct vec4 {
 #define LR_SPEC_CUTOUTS 30 /* some surface has holes where its picture is transparent */
 #define LR_SPEC_MESHES 31
 #define LR_SPEC_FALLOFF 32 /* some light fades with distance */
-#define LR_SPEC_COUNT 33
+#define LR_SPEC_INSPECT 33 /* the film gets frame.inspect instead of light */
+#define LR_SPEC_COUNT 34
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -392,11 +393,16 @@ struct gpu_frame {
     gpu_list instances;
     gpu_list triangles;
     vec3 cells_from; /* where the first of the cells is that shadow rays are sorted by */
-    float unused0;
+    uint inspect;
     vec3 inv_cell; /* 1 / its sides */
-    float unused1;
+    float inspect_scale; /* the distance that is half-way between near and far */
 };
 LR_ROWS(gpu_frame, 22)
+#define LR_GPU_INSPECT_NORMAL 1u
+#define LR_GPU_INSPECT_DEPTH 2u
+#define LR_GPU_INSPECT_OBJECT 3u
+#define LR_GPU_INSPECT_RAYS 4u
+#define LR_GPU_INSPECT_RAY 0.015625 /* 1/64: what a ray adds */
 #define LR_CELL_BITS 5 /* cells along a side, as a power of two */
 #define LR_CELLS 32768u
 

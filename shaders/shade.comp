@@ -9,6 +9,7 @@
 #include "air.glsl"
 #include "classic.glsl"
 #include "film.glsl"
+#include "inspect.glsl"
 #include "light.glsl"
 #include "pattern.glsl"
 #include "queue.glsl"
@@ -54,7 +55,10 @@ void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m,
             break;
     }
     uint most = batch_max(rays.count);
-    trace_shadows(rays, origin, most);
+    if (has_inspect)
+        film_accumulate(sum, inspected_rays(shadowed));
+    else
+        trace_shadows(rays, origin, most);
     uvec4 met = rays.red | rays.green | rays.blue;
     COUNT(counters.shadow, shadowed)
     COUNT(counters.shadow_hits,
@@ -62,7 +66,8 @@ void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m,
     for (uint i = 0u;;) {
         vec3 value = vec3(pick(red, i), pick(green, i), pick(blue, i));
         uvec3 depth = uvec3(pick(rays.red, i), pick(rays.green, i), pick(rays.blue, i));
-        film_accumulate(sum, value * light_left(depth));
+        if (!has_inspect)
+            film_accumulate(sum, value * light_left(depth));
         i++;
         if (i >= most)
             break;
@@ -97,9 +102,13 @@ void send_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m
         vec3 value = weight * (arriving.color * light_color);
         bool reaches = lit && any(greaterThanEqual(value, vec3(LR_FILM_STEP)));
         bool shadowed = (light.flags & LR_GPU_LIGHT_SHADOWS) != 0u;
-        if (reaches && !shadowed)
-            film_accumulate(sum, value);
-        send_light(gpu_shadow_ray(origin, ray.pixel, value, first + l), reaches && shadowed);
+        vec3 at_once = value;
+        if (has_inspect)
+            at_once = inspected_rays(uint(shadowed));
+        if (reaches && (!shadowed || has_inspect))
+            film_accumulate(sum, at_once);
+        send_light(gpu_shadow_ray(origin, ray.pixel, value, first + l),
+                   reaches && shadowed && !has_inspect);
         l++;
         if (l >= count)
             break;
@@ -140,11 +149,16 @@ void main()
         lit = lit && visible;
     }
     film_sum sum = film_zero();
-    if (has_fog && first_lights)
+    if (has_fog && first_lights && !has_inspect)
         film_accumulate(sum, fog);
     vec3 emission = vec3(m.emission_red, m.emission_green, m.emission_blue);
-    if (lit && first_lights)
+    if (has_inspect) {
+        if (first_lights && !absent)
+            film_accumulate(sum, inspected_hit(ray, hit.t, s.object, lit_by));
+        lit = lit && counts_rays();
+    } else if (lit && first_lights) {
         film_accumulate(sum, weight * (m.ambient * color + emission));
+    }
     uint count = hidden(work.light_count);
     lit = lit && count != 0u;
     for (uint l = 0u;;) {

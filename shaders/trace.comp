@@ -8,6 +8,7 @@
 #include "air.glsl"
 #include "batch.glsl"
 #include "film.glsl"
+#include "inspect.glsl"
 #include "queue.glsl"
 #include "trace.glsl"
 
@@ -54,9 +55,12 @@ void main()
         film_sum sum = film_zero();
         vec3 fog;
         vec3 weight = weight_after(ray, met.t, fog);
-        if (has_fog)
+        if (has_fog && !has_inspect)
             film_accumulate(sum, fog);
-        film_accumulate(sum, weight * background(ray.direction));
+        vec3 beyond = weight * background(ray.direction);
+        if (has_inspect)
+            beyond = inspected_rays(1u);
+        film_accumulate(sum, beyond);
         film_add(ray.pixel, sum);
     }
     // Last, because on a CPU an atomic waits for all stores before it.

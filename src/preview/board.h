@@ -16,6 +16,7 @@ typedef struct lr_wish {
     lr_camera camera;       /* without name */
     uint32_t samples, depth, seed;
     double exposure;
+    lr_inspect inspect;
     uint64_t picture; /* grows whenever another picture is wished for: camera, depth, ... */
     uint64_t look;    /* ... or the same to be shown in another way */
 } lr_wish;

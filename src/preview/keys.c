@@ -107,6 +107,23 @@ static void shallower(lr_view *v)
     deepen(v, -1);
 }
 
+static void next_values(lr_view *v)
+{
+    static const char *const names[] = {
+        [LR_INSPECT_LIGHT] = "light",
+        [LR_INSPECT_NORMAL] = "normals",
+        [LR_INSPECT_DEPTH] = "depth, grey at the focus",
+        [LR_INSPECT_OBJECT] = "objects",
+        [LR_INSPECT_RAYS] = "rays a sample, black 0 to yellow 64",
+    };
+    bool lit = v->wish.inspect == LR_INSPECT_LIGHT;
+    v->wish.inspect = v->wish.inspect == LR_INSPECT_RAYS ? LR_INSPECT_LIGHT : v->wish.inspect + 1;
+    lr_view_say(v, "%s", names[v->wish.inspect]);
+    lr_view_wish_picture(v);
+    if (lit || v->wish.inspect == LR_INSPECT_LIGHT)
+        lr_view_build(v);
+}
+
 static void screenshot(lr_view *v)
 {
     lr_board_lock(&v->board);
@@ -159,6 +176,7 @@ static const struct {
     {LR_KEY_DOWN, darker, NULL, NULL},
     {LR_KEY_RIGHT, deeper, "Left Right", "depth: bounces of light"},
     {LR_KEY_LEFT, shallower, NULL, NULL},
+    {'v', next_values, "v", "light, normals, depth, objects, number of rays"},
     {'g', next_device, "g", "next device"},
     {LR_KEY_F12, screenshot, "F12 c", "screenshot"},
     {'c', screenshot, NULL, NULL},

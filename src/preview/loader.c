@@ -175,6 +175,7 @@ static void build(lr_loader *l)
         .depth = b->wish.depth,
         .seed = b->wish.seed,
         .camera = &camera,
+        .inspect = b->wish.inspect,
     };
     lr_device_desc device = l->device;
     lr_board_unlock(b);

@@ -82,6 +82,17 @@ static lr_status lay_sheet(lr_renderer *r, lr_error *error)
     return lr_display_set_overlay(d, fits ? r->sheet.pixels : NULL, error);
 }
 
+/* Kernels for light show nothing else, and others no light: until those that are wished for come,
+ * what was shown stays. */
+static lr_inspect inspect_now(const lr_renderer *r)
+{
+    const lr_progressive *p = r->session->progressive;
+    bool inspects = p->packed.constants[LR_SPEC_INSPECT];
+    if (inspects == (r->wish.inspect != LR_INSPECT_LIGHT))
+        return r->wish.inspect;
+    return p->settings.inspect;
+}
+
 /* Fits the swapchain to the window and starts the picture that is wished for. */
 static lr_status prepare(lr_renderer *r, lr_error *error)
 {
@@ -106,6 +117,7 @@ static lr_status prepare(lr_renderer *r, lr_error *error)
         .depth = r->wish.depth,
         .seed = r->wish.seed,
         .camera = &r->wish.camera,
+        .inspect = inspect_now(r),
     };
     r->started = r->wish.picture;
     r->told_done = false;

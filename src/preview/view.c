@@ -41,6 +41,15 @@ void lr_view_wish_look(lr_view *view)
     view->wish_changed = true;
 }
 
+void lr_view_build(lr_view *view)
+{
+    lr_board_lock(&view->board);
+    view->board.wish = view->wish;
+    view->loader.jobs.build = true;
+    lr_board_unlock(&view->board);
+    lr_loader_wake(&view->loader);
+}
+
 /* ---- What hands do ------------------------------------------------------------------------ */
 
 static lr_screen screen_of(const lr_view *v)

@@ -37,6 +37,9 @@ void lr_view_say(lr_view *view, const char *format, ...) __attribute__((format(p
 void lr_view_wish_picture(lr_view *view);
 void lr_view_wish_look(lr_view *view);
 
+/* Has other kernels made for what is wished. */
+void lr_view_build(lr_view *view);
+
 /* keys.c: what a key does, and the help that names them all; the caller frees it. */
 void lr_view_key(lr_view *view, uint32_t key);
 char *lr_view_help(void);

@@ -194,8 +194,8 @@ static void fill_shades(const lr_curve *curve, uint32_t samples, double scale,
 void lr_display_record(lr_display *display, const lr_buffer *film, const lr_look *look)
 {
     lr_display *d = display;
-    double scale = look->false_colors ? 1 : lr_exp2(look->exposure);
-    const lr_curve *curve = look->false_colors ? &d->linear : &d->srgb;
+    double scale = look->linear ? 1 : lr_exp2(look->exposure);
+    const lr_curve *curve = look->linear ? &d->linear : &d->srgb;
     const uint32_t samples[2] = {look->samples, look->others};
     for (int i = 0; i < 2; i++) {
         struct gpu_shades shades = {0};
@@ -210,7 +210,7 @@ void lr_display_record(lr_display *display, const lr_buffer *film, const lr_look
         .samples = look->samples,
         .blue_first = look->blue_first,
         .overlay = d->has_overlay,
-        .palette = look->false_colors,
+        .palette = look->palette,
         .coarse = look->coarse,
     };
     lr_commands_barrier(d->device);

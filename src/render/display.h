@@ -23,7 +23,8 @@ typedef struct lr_look {
     double exposure;          /* in stops */
     uint32_t samples, others; /* that pixels have: so many, or so many */
     uint32_t coarse;          /* 1: all of them have; else pixels between those that have */
-    bool false_colors;        /* red, 0 to 1, by the palette; exposure does not matter */
+    bool linear;              /* the values are shades, 0 to 1, whatever the exposure */
+    bool palette;             /* red is shown by a colour of the palette */
     bool blue_first;          /* see lr_swapchain */
 } lr_look;
 

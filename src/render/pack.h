@@ -7,12 +7,22 @@
 #include "gpu_layout.h"
 #include "scene/scene.h"
 
+/* What pixels show. Anything but light is only for the window: it needs kernels of its own. */
+typedef enum lr_inspect {
+    LR_INSPECT_LIGHT,
+    LR_INSPECT_NORMAL = LR_GPU_INSPECT_NORMAL, /* that light falls by: (n + 1) / 2 */
+    LR_INSPECT_DEPTH = LR_GPU_INSPECT_DEPTH,   /* from 1 at the eye, 1/2 at the focus, to 0 */
+    LR_INSPECT_OBJECT = LR_GPU_INSPECT_OBJECT, /* a colour for each */
+    LR_INSPECT_RAYS = LR_GPU_INSPECT_RAYS,    /* rays, 1/64 each */
+} lr_inspect;
+
 /* What a render is asked for, with the scene's own values where the caller left them open. */
 typedef struct lr_settings {
     uint32_t width, height, samples, depth, seed;
     uint32_t crop_x, crop_y, crop_width, crop_height;
     const lr_camera *camera;
     uint32_t leaf_size, threads; /* of the builder of trees; 0: as suits them */
+    lr_inspect inspect;
 } lr_settings;
 
 /* Of the corners of what stands in trees: how many, the sums of their coordinates and of the

@@ -47,13 +47,16 @@ void lr_pack_camera(const lr_scene *scene, const lr_settings *settings, lr_packe
     frame->samples = settings->samples;
     frame->inv_samples = (float)(1.0 / settings->samples);
     frame->seed = settings->seed;
-    frame->depth = settings->depth;
+    /* Only light and the rays that it takes depend on what is behind the first surface. */
+    bool bounces = settings->inspect == LR_INSPECT_LIGHT || settings->inspect == LR_INSPECT_RAYS;
+    frame->depth = bounces ? settings->depth : 0;
+    frame->inspect = settings->inspect;
+    frame->inspect_scale = (float)lr_vec3_length(lr_vec3_sub(camera->to, camera->from));
     pack_inside(scene, camera, packed);
     if (scene->default_light) {
         lr_light light = lr_default_light(camera);
         struct gpu_light record;
         lr_pack_light(&light, &record);
         memcpy(&packed->rows[frame->lights], &record, sizeof record);
-        packed->constants[LR_SPEC_FALLOFF] = light.falloff > 0;
     }
 }

@@ -27,6 +27,7 @@ lr_status lr_progressive_create(lr_device *device, const lr_scene *scene,
     if (!p)
         return lr_fail(error, LR_ERROR_MEMORY, "out of memory");
     p->scene = scene;
+    p->settings.inspect = settings->inspect;
     p->seconds_per_ray = device->info.software ? SOFTWARE_SECONDS_PER_RAY : GPU_SECONDS_PER_RAY;
     lr_status status = lr_pack_scene(scene, settings, &p->packed, error);
     if (!status)
@@ -205,6 +206,8 @@ lr_status lr_progressive_step(lr_progressive *progressive, double seconds, lr_pa
 void lr_progressive_look(const lr_progressive *p, lr_look *look)
 {
     look->samples = p->sweep.first_sample + p->sweep.samples;
+    look->linear = p->settings.inspect != LR_INSPECT_LIGHT;
+    look->palette = p->settings.inspect == LR_INSPECT_RAYS;
     look->others = p->sweep.first_sample > 0 ? p->sweep.first_sample : 1;
     look->coarse = p->sweep.first_sample > 0 || p->finished ? 1 : p->sweep.step;
 }

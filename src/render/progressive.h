@@ -31,7 +31,8 @@ lr_status lr_progressive_create(lr_device *device, const lr_scene *scene,
                                 lr_error *error);
 void lr_progressive_destroy(lr_progressive *progressive);
 
-/* Starts a picture anew: with another camera, size, depth or number of samples. `camera` of the
+/* Starts a picture anew: with another camera, size, depth, number of samples, or another kind of
+ * values to inspect; from light to these, or back, takes another lr_progressive. `camera` of the
  * settings is not looked at later. Must be called once before the first step. */
 lr_status lr_progressive_start(lr_progressive *progressive, const lr_settings *settings,
                                lr_error *error);
@@ -42,7 +43,7 @@ lr_status lr_progressive_start(lr_progressive *progressive, const lr_settings *s
 lr_status lr_progressive_step(lr_progressive *progressive, double seconds, lr_pass_done go_on,
                               void *user, lr_error *error);
 
-/* Sets which numbers of samples the pixels have. */
+/* Sets all but the exposure and the order of bytes. */
 void lr_progressive_look(const lr_progressive *progressive, lr_look *look);
 
 /* What fraction of the camera rays has been traced, 0 to 1. */

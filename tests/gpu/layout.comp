@@ -188,8 +188,8 @@ void main()
     put(frame.media); put(frame.lights); put(frame.inside0); put(frame.inside1);
     put(frame.inside2); put(frame.inside3); put(frame.balls); put(frame.bounded);
     put(floatBitsToUint(frame.reach)); put(frame.corners); put_list(frame.instances);
-    put_list(frame.triangles); put_vec3(frame.cells_from); put(floatBitsToUint(frame.unused0));
-    put_vec3(frame.inv_cell); put(floatBitsToUint(frame.unused1));
+    put_list(frame.triangles); put_vec3(frame.cells_from); put(frame.inspect);
+    put_vec3(frame.inv_cell); put(floatBitsToUint(frame.inspect_scale));
     put(work.tile_x); put(work.tile_y); put(work.tile_width); put(work.tile_height);
     put(work.first_sample); put(work.count); put(work.first); put(work.light);
     put(work.light_count); put(work.first_lights); put(work.shadow_room);

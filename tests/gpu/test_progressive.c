@@ -46,7 +46,7 @@ static bool so_often(void *user, double fraction)
     return (*left)-- > 0;
 }
 
-static viewer begin(lr_device *device, const char *text)
+static viewer begin_inspecting(lr_device *device, const char *text, lr_inspect inspect)
 {
     viewer v = {.device = device};
     char *report = NULL;
@@ -54,9 +54,15 @@ static viewer begin(lr_device *device, const char *text)
     if (lr_scene_parse(text, strlen(text), "test.yaml", &v.scene, &report, &message))
         fail_msg("%s", report ? report : message.message);
     MUST(lr_settle(v.scene, &(lr_render_options){0}, &v.settings, error));
+    v.settings.inspect = inspect;
     MUST(lr_progressive_create(device, v.scene, &v.settings, &v.progressive, error));
     MUST(lr_progressive_start(v.progressive, &v.settings, error));
     return v;
+}
+
+static viewer begin(lr_device *device, const char *text)
+{
+    return begin_inspecting(device, text, LR_INSPECT_LIGHT);
 }
 
 static void end(viewer *v)
@@ -265,6 +271,74 @@ static void test_window_has_the_bytes_of_files(void **state)
     end(&v);
 }
 
+static uint64_t rays_of(const lr_render_stats *s)
+{
+    return s->primary.traced + s->reflected.traced + s->refracted.traced + s->shadow.traced;
+}
+
+/* The numbers of rays that the pixels show add up to those that the same picture in light takes. */
+static void check_ray_counts(lr_device *device, const char *text)
+{
+    viewer v = begin(device, text);
+    finish(&v, 0.01);
+    uint64_t expected = rays_of(&v.progressive->stats);
+    end(&v);
+    v = begin_inspecting(device, text, LR_INSPECT_RAYS);
+    finish(&v, 0.01);
+    lr_picture shown;
+    MUST(lr_progressive_picture(v.progressive, &shown, error));
+    double counted = 0;
+    for (size_t i = 0; i < (size_t)shown.width * shown.height; i++)
+        counted += (double)shown.pixels[3 * i] * v.settings.samples / LR_GPU_INSPECT_RAY;
+    assert_near(counted, (double)expected, 1e-6 * (double)expected);
+    lr_picture_free(&shown);
+    end(&v);
+}
+
+static void test_ray_counts(void **state)
+{
+    char text[8192];
+    check_ray_counts(*state, scene_text);
+    strcpy(text, tree_text);
+    append_spheres(text);
+    check_ray_counts(*state, text);
+}
+
+static void expect_pixel(lr_device *device, lr_inspect inspect, uint32_t x, uint32_t y,
+                         const double expected[3])
+{
+    static const char text[] = "camera: {from: [0, 0, 5], to: [0, 0, 0], fov: 90}\n"
+                               "image: {width: 3, height: 3, samples: 1}\n"
+                               "objects:\n"
+                               "  - sphere: {radius: 1}\n"
+                               "  - plane: {normal: [0, 1, 0], offset: -2.5}\n";
+    viewer v = begin_inspecting(device, text, inspect);
+    finish(&v, 1);
+    lr_picture shown;
+    MUST(lr_progressive_picture(v.progressive, &shown, error));
+    for (int i = 0; i < 3; i++)
+        assert_near(shown.pixels[3 * (y * 3 + x) + (uint32_t)i], expected[i], 1e-5);
+    lr_picture_free(&shown);
+    end(&v);
+}
+
+static void test_inspected_values(void **state)
+{
+    /* The sphere faces the camera 4 m away, whose focus is 5 m away; nothing is above. The ray
+     * through the middle of the bottom row meets the plane where it has gone 2.5 down and, with a
+     * slope of 2/3, 3.75 ahead. */
+    double ground = sqrt(2.5 * 2.5 + 3.75 * 3.75);
+    expect_pixel(*state, LR_INSPECT_NORMAL, 1, 1, (double[]){0.5, 0.5, 1});
+    expect_pixel(*state, LR_INSPECT_NORMAL, 1, 2, (double[]){0.5, 1, 0.5});
+    expect_pixel(*state, LR_INSPECT_NORMAL, 1, 0, (double[]){0, 0, 0});
+    expect_pixel(*state, LR_INSPECT_DEPTH, 1, 1, (double[]){5.0 / 9, 5.0 / 9, 5.0 / 9});
+    expect_pixel(*state, LR_INSPECT_DEPTH, 1, 2,
+                 (double[]){5 / (5 + ground), 5 / (5 + ground), 5 / (5 + ground)});
+    /* A camera ray and one towards the light that scenes without lights get. */
+    expect_pixel(*state, LR_INSPECT_RAYS, 1, 1, (double[]){2.0 / 64, 2.0 / 64, 2.0 / 64});
+    expect_pixel(*state, LR_INSPECT_RAYS, 1, 0, (double[]){1.0 / 64, 1.0 / 64, 1.0 / 64});
+}
+
 /* Premultiplied: what lies over the picture counts in full, the picture as much as is left. */
 static void test_overlay(void **state)
 {
@@ -303,6 +377,8 @@ int main(void)
         cmocka_unit_test(test_interruptions),
         cmocka_unit_test(test_camera),
         cmocka_unit_test(test_window_has_the_bytes_of_files),
+        cmocka_unit_test(test_ray_counts),
+        cmocka_unit_test(test_inspected_values),
         cmocka_unit_test(test_overlay),
         cmocka_unit_test(test_validation_is_silent),
     };
