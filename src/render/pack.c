@@ -164,7 +164,11 @@ static lr_status pack_lights(const lr_scene *scene, const lr_light *fallback,
 lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_packed_scene *packed,
                         lr_error *error)
 {
-    *packed = (lr_packed_scene){.leaf_size = settings->leaf_size, .threads = settings->threads};
+    lr_trees own_trees = {0};
+    *packed = (lr_packed_scene){.leaf_size = settings->leaf_size,
+                                .threads = settings->threads,
+                                .trees = settings->trees ? settings->trees : &own_trees};
+    packed->trees->keep = packed->trees == settings->trees;
     const lr_camera *camera = settings->camera;
     lr_vec3 forward = lr_vec3_normalize(lr_vec3_sub(camera->to, camera->from));
     lr_vec3 right = lr_vec3_normalize(lr_vec3_cross(forward, camera->up));
@@ -202,8 +206,12 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
         status = lr_pack_objects(scene, settings, packed, error);
     if (!status)
         status = lr_pack_textures(scene, packed, error);
+    packed->trees = NULL;
+    lr_trees_free(&own_trees);
     if (status)
         lr_packed_scene_free(packed);
+    else if (settings->trees)
+        lr_trees_sweep(settings->trees);
     return status;
 }
 

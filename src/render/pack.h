@@ -5,6 +5,7 @@
 
 #include "base/status.h"
 #include "gpu_layout.h"
+#include "render/trees.h"
 #include "scene/scene.h"
 
 /* What a render is asked for, with the scene's own values where the caller left them open. */
@@ -13,6 +14,8 @@ typedef struct lr_settings {
     uint32_t crop_x, crop_y, crop_width, crop_height;
     const lr_camera *camera;
     uint32_t leaf_size, threads; /* of the builder of trees; 0: as suits them */
+    lr_trees *trees; /* NULL, or those of the packing before, which become those of this one; the
+                        same rows come out as without them */
 } lr_settings;
 
 typedef struct lr_packed_scene {
@@ -21,6 +24,7 @@ typedef struct lr_packed_scene {
     uint32_t light_count;
     uint32_t tests_per_ray;      /* about so many primitives does a ray meet on its way */
     uint32_t leaf_size, threads; /* of lr_settings */
+    lr_trees *trees;             /* while it is being packed */
     /* Of the corners of what stands in trees: how many, the sums of their coordinates and of the
      * squares of these. */
     double places, place_sum[3], place_square_sum[3];

@@ -159,9 +159,12 @@ static void pack_facet(const facet_work *work, uint32_t place)
         .flags = attribute_flags(mesh) | (work->shared ? 0 : m->object_flags[f->object]),
     };
     memcpy(&m->packed->rows[work->first_row + 3 * (size_t)place], &record, sizeof record);
-    if (m->corners && lr_mesh_has_attributes(mesh))
+    if (m->corners) {
+        bool has = lr_mesh_has_attributes(mesh);
         m->corners[work->first + place] =
-            (struct gpu_corners){row + v[0], row + v[1], row + v[2], 0};
+            has ? (struct gpu_corners){row + v[0], row + v[1], row + v[2], 0}
+                : (struct gpu_corners){0};
+    }
 }
 
 static void pack_part(void *context, uint32_t part)
@@ -174,7 +177,7 @@ static void pack_part(void *context, uint32_t part)
 
 /* The tree of some meshes. */
 typedef struct mesh_tree {
-    lr_bvh *bvh;
+    const lr_bvh *bvh;
     uint32_t first; /* number of its first triangle */
     float reach;
 } mesh_tree;
@@ -260,7 +263,6 @@ static lr_status build_facets(mesh_packing *m, facet *facets, lr_bvh_box *boxes,
         return no_memory(error);
     if (*count == before)
         return LR_OK;
-    lr_bvh_destroy(tree->bvh);
     return lr_pack_build(m->packed, boxes, *count, leaf_size, &tree->bvh, error);
 }
 
@@ -399,7 +401,7 @@ static lr_status pack_instances(mesh_packing *m, const lr_bvh_box *boxes, uint32
     uint32_t count = m->instance_count;
     gpu_list *list = &m->packed->frame.instances;
     bool tree = count > LR_LISTED_MAX;
-    lr_bvh *bvh = NULL;
+    const lr_bvh *bvh = NULL;
     lr_status status = LR_OK;
     for (uint32_t i = 0; i < count && tree; i++)
         lr_pack_reach(&m->packed->frame.reach, &boxes[i]);
@@ -425,7 +427,6 @@ static lr_status pack_instances(mesh_packing *m, const lr_bvh_box *boxes, uint32
             status = no_memory(error);
     }
     free(place);
-    lr_bvh_destroy(bvh);
     return status;
 }
 
@@ -512,8 +513,6 @@ lr_status lr_pack_meshes(const lr_scene *scene, const uint32_t *flags, uint32_t 
         }
     if (!status)
         status = pack_all(&m, trees, instances, error);
-    for (uint32_t i = 0; trees && i <= scene->mesh_count; i++)
-        lr_bvh_destroy(trees[i].bvh);
     free(trees);
     free(m.users);
     free(m.shown_by);
