@@ -172,7 +172,11 @@ static lr_status pack_lights(const lr_scene *scene, lr_packed_scene *packed, lr_
 lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_packed_scene *packed,
                         lr_error *error)
 {
-    *packed = (lr_packed_scene){.leaf_size = settings->leaf_size, .threads = settings->threads};
+    lr_trees own_trees = {0};
+    *packed = (lr_packed_scene){.leaf_size = settings->leaf_size,
+                                .threads = settings->threads,
+                                .trees = settings->trees ? settings->trees : &own_trees};
+    packed->trees->keep = packed->trees == settings->trees;
     packed->frame = (struct gpu_frame){
         .background_low = lr_pack_vec3(scene->background[0]),
         .background_high = lr_pack_vec3(scene->background[1]),
@@ -192,9 +196,13 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
         status = lr_pack_objects(scene, packed, error);
     if (!status)
         status = lr_pack_textures(scene, packed, error);
+    packed->trees = NULL;
+    lr_trees_free(&own_trees);
     if (!status)
         lr_pack_camera(scene, settings, packed);
-    else
+    if (!status && settings->trees)
+        lr_trees_sweep(settings->trees);
+    if (status)
         lr_packed_scene_free(packed);
     return status;
 }

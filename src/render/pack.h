@@ -5,6 +5,7 @@
 
 #include "base/status.h"
 #include "gpu_layout.h"
+#include "render/trees.h"
 #include "scene/scene.h"
 
 /* What pixels show. Anything but light is only for the window: it needs kernels of its own. */
@@ -23,6 +24,8 @@ typedef struct lr_settings {
     const lr_camera *camera;
     uint32_t leaf_size, threads; /* of the builder of trees; 0: as suits them */
     lr_inspect inspect;
+    lr_trees *trees; /* NULL, or those of the packing before, which become those of this one; the
+                        same rows come out as without them */
 } lr_settings;
 
 /* Of the corners of what stands in trees: how many, the sums of their coordinates and of the
@@ -37,6 +40,7 @@ typedef struct lr_packed_scene {
     uint32_t light_count;
     uint32_t tests_per_ray;      /* about so many primitives does a ray meet on its way */
     uint32_t leaf_size, threads; /* of lr_settings */
+    lr_trees *trees;             /* while it is being packed */
     lr_places places;
     struct gpu_frame frame;
     uint32_t constants[LR_SPEC_COUNT]; /* but for those that only the device decides */

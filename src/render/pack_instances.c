@@ -79,7 +79,7 @@ static lr_status list_instances(mesh_packing *m, const lr_bvh_box *boxes, uint32
     uint32_t count = m->instance_count;
     gpu_list *list = &m->packed->frame.instances;
     bool tree = count > LR_LISTED_MAX;
-    lr_bvh *bvh = NULL;
+    const lr_bvh *bvh = NULL;
     lr_status status = LR_OK;
     for (uint32_t i = 0; i < count && tree; i++)
         lr_pack_reach(&m->packed->frame.reach, &boxes[i]);
@@ -105,7 +105,6 @@ static lr_status list_instances(mesh_packing *m, const lr_bvh_box *boxes, uint32
             status = lr_pack_no_memory(error);
     }
     free(place);
-    lr_bvh_destroy(bvh);
     return status;
 }
 

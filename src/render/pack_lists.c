@@ -140,16 +140,17 @@ void lr_pack_cells(lr_packed_scene *packed)
 }
 
 lr_status lr_pack_build(const lr_packed_scene *packed, const lr_bvh_box *boxes, uint32_t count,
-                        uint32_t leaf_size, lr_bvh **bvh, lr_error *error)
+                        uint32_t leaf_size, const lr_bvh **bvh, lr_error *error)
 {
     lr_bvh_options options = {.leaf_size = packed->leaf_size ? packed->leaf_size : leaf_size,
                               .threads = packed->threads};
-    return lr_bvh_create(boxes, count, &options, bvh, error);
+    return lr_trees_get(packed->trees, boxes, count, &options, bvh, error);
 }
 
 /* A hierarchy over `count` members of a kind. */
 static lr_status build_tree(lr_packed_scene *packed, const lr_primitive *primitives,
-                            const uint32_t *members, uint32_t count, lr_bvh **bvh, lr_error *error)
+                            const uint32_t *members, uint32_t count, const lr_bvh **bvh,
+                            lr_error *error)
 {
     lr_bvh_box *boxes = lr_alloc(count, sizeof *boxes);
     if (!boxes)
@@ -167,8 +168,8 @@ static lr_status build_tree(lr_packed_scene *packed, const lr_primitive *primiti
 /* Packs the records of a kind: if it has many members in the order of the leaves of a tree, *bvh.
  */
 static lr_status pack_kind(const lr_primitive *primitives, const uint32_t *members, uint32_t count,
-                           lr_list_kind kind, gpu_list *list, lr_bvh **bvh, lr_packed_scene *packed,
-                           lr_error *error)
+                           lr_list_kind kind, gpu_list *list, const lr_bvh **bvh,
+                           lr_packed_scene *packed, lr_error *error)
 {
     bool tree = packed->constants[LR_SPEC_TREES] && kind != LR_PLANES && count > LR_LISTED_MAX;
     list->base = packed->row_count - rows_of[kind] * list->begin;
@@ -198,7 +199,7 @@ static bool pack_balls(const lr_primitive *primitives, const uint32_t *sorted,
 }
 
 static lr_status pack_sorted(const lr_primitive *primitives, const uint32_t *sorted,
-                             const uint32_t *counts, lr_bvh **trees, lr_packed_scene *packed,
+                             const uint32_t *counts, const lr_bvh **trees, lr_packed_scene *packed,
                              lr_error *error)
 {
     struct gpu_frame *frame = &packed->frame;
@@ -248,10 +249,8 @@ lr_status lr_pack_lists(const lr_primitive *primitives, uint32_t count, lr_packe
         return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's objects");
     for (uint32_t i = 0; i < count; i++)
         sorted[begin[primitives[i].list]++] = i;
-    lr_bvh *trees[LR_LIST_COUNT] = {NULL};
+    const lr_bvh *trees[LR_LIST_COUNT] = {NULL};
     lr_status status = pack_sorted(primitives, sorted, counts, trees, packed, error);
-    for (int kind = 0; kind < LR_LIST_COUNT; kind++)
-        lr_bvh_destroy(trees[kind]);
     free(sorted);
     return status;
 }

@@ -207,9 +207,12 @@ static void pack_facet(const facet_work *work, uint32_t place)
         .flags = attribute_flags(mesh) | (work->shared ? 0 : m->object_flags[f->object]),
     };
     memcpy(&m->packed->rows[work->first_row + 3 * (size_t)place], &record, sizeof record);
-    if (m->corners && lr_mesh_has_attributes(mesh))
+    if (m->corners) {
+        bool has = lr_mesh_has_attributes(mesh);
         m->corners[work->first + place] =
-            (struct gpu_corners){row + v[0], row + v[1], row + v[2], 0};
+            has ? (struct gpu_corners){row + v[0], row + v[1], row + v[2], 0}
+                : (struct gpu_corners){0};
+    }
 }
 
 static void pack_part(void *context, uint32_t part)
@@ -295,7 +298,6 @@ static lr_status build_facets(mesh_packing *m, facet_list *list, bool shared, me
         return lr_pack_no_memory(error);
     if (list->count == before)
         return LR_OK;
-    lr_bvh_destroy(tree->bvh);
     return lr_pack_build(m->packed, list->boxes, list->count, leaf_size, &tree->bvh, error);
 }
 
@@ -416,8 +418,6 @@ lr_status lr_pack_meshes(const lr_scene *scene, const uint32_t *flags, uint32_t 
         }
     if (!status)
         status = pack_all(&m, trees, instances, error);
-    for (uint32_t i = 0; trees && i <= scene->mesh_count; i++)
-        lr_bvh_destroy(trees[i].bvh);
     free(trees);
     free(m.users);
     free(m.shown_by);

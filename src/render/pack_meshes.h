@@ -19,7 +19,7 @@ typedef struct mesh_packing {
 
 /* The tree of some meshes. */
 typedef struct mesh_tree {
-    lr_bvh *bvh;
+    const lr_bvh *bvh;
     uint32_t first; /* number of its first triangle */
     float reach;
 } mesh_tree;
