@@ -108,6 +108,8 @@ lr_status lr_import_convert(lr_import *import);
 
 /* import_material.c: the scene's material for aiMaterial `index`. */
 lr_status lr_import_material(lr_import *import, uint32_t index, uint32_t *material);
+/* Whether a material has numbers under the key; asked for numbers in a text, assimp may throw. */
+bool lr_import_has_numbers(const struct aiMaterial *from, const char *key, unsigned texture_type);
 /* import_texture.c: the texture of the colour, if there is one that can be shown. */
 lr_status lr_import_texture(lr_import *import, const struct aiMaterial *from, const char *name,
                             lr_material *material);

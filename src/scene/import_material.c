@@ -168,11 +168,19 @@ static lr_status gltf_material(lr_import *import, const json_t *json, lr_materia
 
 /* ---- OBJ and the others -------------------------------------------------------------------- */
 
+bool lr_import_has_numbers(const struct aiMaterial *from, const char *key, unsigned texture_type)
+{
+    const struct aiMaterialProperty *found;
+    return aiGetMaterialProperty(from, key, texture_type, 0, &found) == aiReturn_SUCCESS &&
+           found->mType != aiPTI_String;
+}
+
 static double number_of(const struct aiMaterial *from, const char *key, double fallback)
 {
     ai_real value = 0;
     unsigned count = 1;
-    if (aiGetMaterialFloatArray(from, key, 0, 0, &value, &count) != aiReturn_SUCCESS || count < 1)
+    if (!lr_import_has_numbers(from, key, 0) ||
+        aiGetMaterialFloatArray(from, key, 0, 0, &value, &count) != aiReturn_SUCCESS || count < 1)
         return fallback;
     return isfinite(value) ? (double)value : fallback;
 }
@@ -181,7 +189,8 @@ static lr_color color_of(const struct aiMaterial *from, const char *key, double 
                          double limit)
 {
     struct aiColor4D c;
-    if (aiGetMaterialColor(from, key, 0, 0, &c) != aiReturn_SUCCESS)
+    if (!lr_import_has_numbers(from, key, 0) ||
+        aiGetMaterialColor(from, key, 0, 0, &c) != aiReturn_SUCCESS)
         return grey(fallback);
     return (lr_color){clamp((double)c.r, 0, limit), clamp((double)c.g, 0, limit),
                       clamp((double)c.b, 0, limit)};
@@ -198,7 +207,8 @@ static void mtl_material(const struct aiMaterial *from, lr_material *material)
 {
     int model = 2;
     unsigned count = 1;
-    if (aiGetMaterialIntegerArray(from, AI_MATKEY_OBJ_ILLUM, &model, &count) != aiReturn_SUCCESS)
+    if (!lr_import_has_numbers(from, "$mat.illum", 0) ||
+        aiGetMaterialIntegerArray(from, AI_MATKEY_OBJ_ILLUM, &model, &count) != aiReturn_SUCCESS)
         model = 2;
     lr_color specular = color_of(from, "$clr.specular", 0, 1);
     double opacity = clamp(number_of(from, "$mat.opacity", 1), 0, 1);

@@ -8,6 +8,14 @@
 
 #include "scene/texture.h"
 
+/* By aiGetMaterialTexture, other properties of the texture could overflow what it reads them into.
+ */
+static bool has_texture(const struct aiMaterial *from, enum aiTextureType type,
+                        struct aiString *path)
+{
+    return aiGetMaterialString(from, AI_MATKEY_TEXTURE(type, 0), path) == aiReturn_SUCCESS;
+}
+
 /* The one of assimp's types that the format uses for the colour. */
 static bool find_color_texture(const struct aiMaterial *from, enum aiTextureType *type,
                                struct aiString *path)
@@ -15,9 +23,7 @@ static bool find_color_texture(const struct aiMaterial *from, enum aiTextureType
     static const enum aiTextureType types[] = {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE};
     for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
         *type = types[i];
-        if (aiGetMaterialTexture(from, *type, 0, path, NULL, NULL, NULL, NULL, NULL, NULL) ==
-                aiReturn_SUCCESS &&
-            path->data[0])
+        if (has_texture(from, *type, path) && path->data[0])
             return true;
     }
     return false;
@@ -28,7 +34,8 @@ static int integer_of(const struct aiMaterial *from, const char *key, enum aiTex
 {
     int value = fallback;
     unsigned count = 1;
-    if (aiGetMaterialIntegerArray(from, key, type, 0, &value, &count) != aiReturn_SUCCESS)
+    if (!lr_import_has_numbers(from, key, type) ||
+        aiGetMaterialIntegerArray(from, key, type, 0, &value, &count) != aiReturn_SUCCESS)
         value = fallback;
     return value;
 }
@@ -98,8 +105,7 @@ static lr_status note_others(lr_import *import, const struct aiMaterial *from, c
     char list[200] = "";
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         struct aiString path;
-        if (aiGetMaterialTexture(from, others[i].type, 0, &path, NULL, NULL, NULL, NULL, NULL,
-                                 NULL) != aiReturn_SUCCESS)
+        if (!has_texture(from, others[i].type, &path))
             continue;
         size_t used = strlen(list);
         snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", others[i].what);
@@ -121,7 +127,8 @@ lr_status lr_import_texture(lr_import *import, const struct aiMaterial *from, co
                               "of texture coordinates than the first",
                               name);
     struct aiUVTransform moved;
-    if (aiGetMaterialUVTransform(from, AI_MATKEY_UVTRANSFORM(type, 0), &moved) == aiReturn_SUCCESS)
+    if (lr_import_has_numbers(from, _AI_MATKEY_UVTRANSFORM_BASE, type) &&
+        aiGetMaterialUVTransform(from, AI_MATKEY_UVTRANSFORM(type, 0), &moved) == aiReturn_SUCCESS)
         status = lr_import_note(import,
                                 "material \"%s\": the shift, turn and scale of its texture are "
                                 "left out",
