@@ -176,6 +176,7 @@ static void build(lr_loader *l)
         .seed = b->wish.seed,
         .camera = &camera,
         .inspect = b->wish.inspect,
+        .trees = &l->trees,
     };
     lr_device_desc device = l->device;
     lr_board_unlock(b);
@@ -398,6 +399,7 @@ static void release(lr_loader *l)
 {
     lr_follow_destroy(l->follow);
     lr_shared_scene_give_back(l->scene);
+    lr_trees_free(&l->trees);
     free_cameras(&l->news);
     free(l->news.errors);
     if (l->wake >= 0)

@@ -48,6 +48,7 @@ typedef struct lr_loader {
     lr_shared_scene *scene; /* the latest that is valid */
     char sha256[65];        /* of the text that it was read from, or saved to */
     lr_follow *follow;
+    lr_trees trees;    /* of the scene's geometry */
     uint32_t failures; /* of devices, one after the other */
 } lr_loader;
 
