@@ -11,6 +11,7 @@
 #define EXPOSURE_MAX 64.0
 #define DEPTH_MAX 64
 #define FOV_STEP 1.1
+#define FOV_GRAIN 1e6 /* of a degree; so a step back is back, and what is saved is short */
 
 static void toggle_help(lr_view *v)
 {
@@ -57,7 +58,8 @@ static void focus(lr_view *v)
 
 static void set_fov(lr_view *v, double factor)
 {
-    v->wish.camera = lr_camera_set_fov(v->wish.camera, v->wish.camera.fov * factor);
+    double fov = nearbyint(v->wish.camera.fov * factor * FOV_GRAIN) / FOV_GRAIN;
+    v->wish.camera = lr_camera_set_fov(v->wish.camera, fov);
     lr_view_say(v, "field of view %.3g degrees", v->wish.camera.fov);
     lr_view_wish_picture(v);
 }
