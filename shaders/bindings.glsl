@@ -38,6 +38,7 @@ layout(constant_id = LR_SPEC_INSTANCE_TREE) const bool has_instance_tree = true;
 layout(constant_id = LR_SPEC_ONE_SIDED) const bool has_one_sided = true;
 layout(constant_id = LR_SPEC_CORNERS) const bool has_corners = true;
 layout(constant_id = LR_SPEC_INSPECT) const bool has_inspect = true;
+layout(constant_id = LR_SPEC_EXPLAIN) const bool explains = false;
 
 layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame; };
 layout(set = 0, binding = LR_BIND_SCENE_TEXEL) uniform usamplerBuffer scene_texels;
@@ -61,6 +62,7 @@ layout(set = 0, binding = LR_BIND_SHADOWS_TEXEL) uniform usamplerBuffer shadow_t
 
 layout(std430, set = 0, binding = LR_BIND_CELLS) buffer CellBlock { uint cells[]; };
 layout(std430, set = 0, binding = LR_BIND_ORDER) buffer OrderBlock { uint shadow_order[]; };
+layout(std430, set = 0, binding = LR_BIND_NOTES) buffer NoteBlock { gpu_notes notes; };
 
 layout(push_constant) uniform WorkBlock { gpu_work work; };
 

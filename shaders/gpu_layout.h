@@ -41,6 +41,9 @@ typedef struct vec4 {
 #define LR_BIND_CELLS 14 /* how many shadow rays end in each cell, segment by segment */
 #define LR_BIND_ORDER 15 /* the shadow rays of each segment in the order of their cells */
 #define LR_BIND_COUNT 16
+/* gpu_notes, in place of the order: what explains does not sort, so that no device needs one
+ * binding more. */
+#define LR_BIND_NOTES LR_BIND_ORDER
 
 /* ---- Specialisation constants: what a scene does not use is not compiled ---- */
 #define LR_SPEC_TEXEL_LOADS 0
@@ -77,7 +80,8 @@ typedef struct vec4 {
 #define LR_SPEC_MESHES 31
 #define LR_SPEC_FALLOFF 32 /* some light fades with distance */
 #define LR_SPEC_INSPECT 33 /* the film gets frame.inspect instead of light */
-#define LR_SPEC_COUNT 34
+#define LR_SPEC_EXPLAIN 34 /* every ray and light is noted: gpu_notes */
+#define LR_SPEC_COUNT 35
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -198,9 +202,10 @@ LR_ROWS(gpu_node, 4)
 #define LR_NODE_FIRST 0x0FFFFFFFu
 #define LR_NODE_ROWS 4
 #define LR_TREE_DEPTH 64
-#define LR_BOX_SLACK 3.814697265625e-6 /* 2^-18: boxes against rounding, relative to coordinates   \
-                                        */
-#define LR_BOX_MISSED 0x7F800000       /* infinity: the distance to a box that is not met */
+#define LR_BOX_SLACK                                                                               \
+    3.814697265625e-6            /* 2^-18: boxes against rounding, relative to coordinates         \
+                                  */
+#define LR_BOX_MISSED 0x7F800000 /* infinity: the distance to a box that is not met */
 
 struct gpu_plane {
     vec3 normal;  /* unit */
@@ -442,7 +447,7 @@ struct gpu_ray {
     vec3 direction; /* unit */
     uint state;
     vec3 weight;
-    uint unused;
+    uint note;   /* of the ray that it comes from, in kernels that explain */
     uint media0; /* only in scenes with media: ranks of the media around the origin, two a word, in
                     no order, 0: none */
     uint media1;
@@ -462,8 +467,8 @@ LR_ROWS(gpu_hit, 1)
 /* Light on its way from a source to a point, if nothing stands between them. */
 struct gpu_shadow_ray {
     vec3 origin; /* the point */
-    uint pixel;
-    vec3 value; /* what it adds to the pixel */
+    uint pixel;  /* in kernels that explain, which have but one: the light's note */
+    vec3 value;  /* what it adds to the pixel */
     uint light;
 };
 LR_ROWS(gpu_shadow_ray, 2)
@@ -525,6 +530,117 @@ struct gpu_display {
     uint overlay;    /* 1: there is one: pixels with premultiplied alpha, blue in the lowest byte */
     uint palette;    /* 1: the shade of red is an index of the palette */
     uint coarse;     /* pixels between those of the film that have samples, at most */
+};
+
+/* ---- What kernels that explain write down, of one pixel ----
+ * A note's number is 1 + its index, 0 is none. The last of each kind is for all that have no room.
+ */
+#define LR_NOTED_RAYS 16384
+#define LR_NOTED_LIGHTS 65536
+#define LR_NOTED_OBSTACLES 65536
+#define LR_NOTED_HITS 4096 /* most rays of a pass */
+
+#define LR_NOTE_ENTERING 1u /* the ray comes from outside */
+#define LR_NOTE_LIT 2u      /* the material shows light */
+#define LR_NOTE_BENDS 4u    /* what goes through is refracted */
+#define LR_NOTE_TOTAL 8u    /* ... and there is total internal reflection */
+#define LR_NOTE_FRESNEL 16u
+#define LR_NOTE_HIDDEN 32u /* another medium fills the space on both sides */
+#define LR_NOTE_HOLE 64u
+#define LR_NOTE_LOST 128u /* more nested media, or hidden surfaces passed, than are kept track of  \
+                           */
+#define LR_NOTE_REFLECTED_SHIFT 8  /* LR_FATE_* of the reflected ray, */
+#define LR_NOTE_REFRACTED_SHIFT 10 /* of the refracted one */
+#define LR_FATE_NONE 0u            /* its weight is 0 */
+#define LR_FATE_TRACED 1u
+#define LR_FATE_TOO_DEEP 2u
+#define LR_FATE_TOO_WEAK 3u
+
+/* Steps: low and high word of red, green and blue, as in the film. */
+struct gpu_ray_note {
+    vec3 origin;
+    uint parent; /* the note of the ray that it comes from */
+    vec3 direction;
+    uint state; /* as gpu_ray's */
+    vec3 weight;
+    float t;           /* LR_T_MAX: it meets nothing */
+    vec3 weight_there; /* behind fog and absorption */
+    uint primitive;
+    vec3 fog;    /* the light that it brings */
+    uint medium; /* rank of what it goes through */
+    uint fog_steps[6];
+    uint own_steps[6]; /* background; ambient and emitted light */
+    vec3 background;
+    uint object; /* from here on of what it meets */
+    vec3 position;
+    uint flags;             /* LR_NOTE_* */
+    vec3 normal;            /* geometric, outward */
+    uint medium_beyond;     /* rank */
+    vec3 lit_by;            /* normal that it is lit and mirrors by, against the ray */
+    float cosine;           /* between that and the way back, the sheet's c1 */
+    vec3 color;             /* of the material here */
+    float refracted_cosine; /* the sheet's c2 */
+    vec3 ambient;           /* light */
+    float ior;
+    vec3 emission; /* light */
+    float ior_beyond;
+    vec3 reflect_weight;
+    float reflectance; /* by Fresnel's equations */
+    vec3 transmit_weight;
+    uint unused0;
+    vec3 reflected; /* directions, unit */
+    uint unused1;
+    vec3 refracted;
+    uint unused2;
+};
+LR_ROWS(gpu_ray_note, 19)
+
+struct gpu_light_note {
+    vec3 origin; /* where the light may fall */
+    uint ray;    /* the note of the ray that met the surface there */
+    vec3 wi;     /* towards the light */
+    uint light;
+    vec3 arriving; /* its colour there, without shadows */
+    float distance;
+    vec3 value; /* of that what reaches the pixel, without shadows */
+    float cosine;
+    vec3 left; /* share that arrives through what stands in the way */
+    float highlight;
+    float attenuation; /* 1 / distance^falloff */
+    float spot;        /* share within a spot light's cone */
+    uint reaches;      /* 1: value is worth a shadow ray */
+    uint unused;
+    uint steps[6];
+    uint unused0;
+    uint unused1;
+};
+LR_ROWS(gpu_light_note, 8)
+
+struct gpu_obstacle_note {
+    vec3 left;  /* share of the light that it lets through */
+    uint light; /* the note of the light that it meets */
+    float t0;   /* where, in metres from the surface; what is not on the way counts for nothing */
+    float t1;
+    uint object;
+    uint unused;
+};
+LR_ROWS(gpu_obstacle_note, 2)
+
+#ifdef __STDC__
+typedef struct gpu_ray_note gpu_ray_note;
+typedef struct gpu_light_note gpu_light_note;
+typedef struct gpu_obstacle_note gpu_obstacle_note;
+#endif
+
+struct gpu_notes {
+    uint rays; /* how many there would be */
+    uint lights;
+    uint obstacles;
+    uint unused;
+    uint of_hit[LR_NOTED_HITS]; /* the note of the ray of each hit of this pass */
+    gpu_ray_note ray[LR_NOTED_RAYS];
+    gpu_light_note light[LR_NOTED_LIGHTS];
+    gpu_obstacle_note obstacle[LR_NOTED_OBSTACLES];
 };
 
 /* ---- The start-up self-test ---- */

@@ -23,6 +23,23 @@ struct arriving_light {
     vec3 wi; // unit, towards the light
 };
 
+// 1 / distance^falloff of a light that fades.
+float attenuation(gpu_light light, float distance2)
+{
+    return ex_exp2(clamp(-light.half_falloff * ex_log2(distance2), LR_ATTENUATION_MIN,
+                         LR_ATTENUATION_MAX));
+}
+
+// The share of a spot light that goes into a direction: smoothstep in the cosine from the edge to the
+// inner angle.
+float spot_share(gpu_light light, vec3 wi)
+{
+    float cosine = -ex_dot(wi, light.direction);
+    float s = clamp((cosine - light.cos_angle) * light.cos_scale, 0.0, 1.0);
+    bool spot = (light.flags & LR_GPU_LIGHT_SPOT) != 0u;
+    return spot ? s * s * (3.0 - 2.0 * s) : 1.0;
+}
+
 arriving_light sample_light(gpu_light light, vec3 position)
 {
     bool directional = (light.flags & LR_GPU_LIGHT_DIRECTIONAL) != 0u;
@@ -33,16 +50,10 @@ arriving_light sample_light(gpu_light light, vec3 position)
     vec3 wi = directional ? -light.direction : to_light * ex_rsqrt(safe2);
     float strength = 1.0;
     if (has_falloff)
-        strength = ex_exp2(clamp(-light.half_falloff * ex_log2(safe2), LR_ATTENUATION_MIN,
-                                 LR_ATTENUATION_MAX));
+        strength = attenuation(light, safe2);
     strength = directional ? 1.0 : (apart ? strength : 0.0);
-    if (has_spots) {
-        // Smoothstep in the cosine from the edge to the inner angle.
-        float cosine = -ex_dot(wi, light.direction);
-        float s = clamp((cosine - light.cos_angle) * light.cos_scale, 0.0, 1.0);
-        bool spot = (light.flags & LR_GPU_LIGHT_SPOT) != 0u;
-        strength = strength * (spot ? s * s * (3.0 - 2.0 * s) : 1.0);
-    }
+    if (has_spots)
+        strength = strength * spot_share(light, wi);
     return arriving_light(light.color * strength, wi);
 }
 

@@ -47,7 +47,10 @@ void store_ray(uint index, gpu_ray ray)
     uint at = ray_rows * index;
     rays_out[at] = pack_row(ray.origin, ray.pixel);
     rays_out[at + 1u] = pack_row(ray.direction, ray.state);
-    rays_out[at + 2u] = pack_row(ray.weight, 0u);
+    uint note = 0u;
+    if (explains)
+        note = ray.note;
+    rays_out[at + 2u] = pack_row(ray.weight, note);
     if (has_media)
         rays_out[at + 3u] = ray_media(ray);
 }

@@ -6,6 +6,7 @@
 #include "exact.glsl"
 #include "fresnel.glsl"
 #include "media.glsl"
+#include "notes.glsl"
 #include "queue.glsl"
 #include "scene_data.glsl"
 #include "surface.glsl"
@@ -23,8 +24,9 @@ float greatest(vec3 v)
     return max(v.x, max(v.y, v.z));
 }
 
-// Whether a child is worth a ray; counts the ones that are cut off.
-bool admit(child c, uint depth)
+// Whether a child is worth a ray; counts the ones that are cut off. `fate` is what becomes of it, in
+// kernels that explain.
+bool admit(child c, uint depth, inout uint fate)
 {
     float weight = greatest(c.weight);
     bool counts = !(weight < LR_WEIGHT_MIN);
@@ -34,6 +36,9 @@ bool admit(child c, uint depth)
         atomicAdd(counters.dropped_depth, 1u);
     if (too_weak)
         atomicAdd(counters.dropped_weight, 1u);
+    if (explains)
+        fate = mix(mix(mix(LR_FATE_TRACED, LR_FATE_TOO_WEAK, too_weak), LR_FATE_TOO_DEEP, too_deep),
+                   LR_FATE_NONE, !counts);
     return counts && !too_deep && !too_weak;
 }
 
@@ -48,7 +53,7 @@ vec3 on_side(vec3 d, vec3 n)
 void emit(uint slot, child c, uint pixel, surface s, vec3 n)
 {
     store_ray(slot, gpu_ray(s.position + n * (c.side * s.offset), pixel, ex_normalize(c.direction),
-                            c.state, c.weight, 0u, c.media.x, c.media.y, c.media.z, c.media.w));
+                            c.state, c.weight, noted_ray, c.media.x, c.media.y, c.media.z, c.media.w));
 }
 
 // Emits the children of `ray`, which met `s` with `weight`; n is the surface's normal against the ray,
@@ -65,7 +70,7 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids
                  (ids.y & LR_FLAG_TRANSPARENT) != 0u && !absent;
     uint depth = ray.state & LR_STATE_DEPTH;
 
-    bool hidden = absent;
+    bool hidden = absent, lost = false;
     float ior1 = 1.0, ior2 = m.ior, gamma = 1.0;
     if (has_media) {
         bool placed = true;
@@ -76,6 +81,8 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids
             beyond = media_without(media, ids.z);
         if (wanted && !placed)
             atomicAdd(counters.dropped_nesting, 1u);
+        if (explains)
+            lost = !placed;
         uint after = media_top(beyond);
         hidden = hidden || (solid && before == after);
         ior1 = load_medium(before).ior;
@@ -96,6 +103,8 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids
         float inside = refracted_cosine_squared(c1, ratio);
         float f = inside <= 0.0 ? 1.0
                                 : fresnel_reflectance(c1, ex_sqrt(inside), ior1, ior2);
+        if (explains && wanted)
+            note_reflectance(f);
         reflect_weight = (reflect_weight + transmit_weight) * f;
         transmit_weight = transmit_weight * (1.0 - f);
     } else if (total) {
@@ -114,8 +123,9 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids
                            next | (LR_KIND_REFLECTED << LR_STATE_KIND_SHIFT));
     child through = child(transmit_weight, refracted, -1.0, beyond,
                           next | (LR_KIND_REFRACTED << LR_STATE_KIND_SHIFT));
-    bool emit_mirrored = wanted && !hidden && admit(mirrored, depth);
-    bool emit_through = wanted && !hidden && !total && admit(through, depth);
+    uint mirrored_fate = LR_FATE_NONE, through_fate = LR_FATE_NONE;
+    bool emit_mirrored = wanted && !hidden && admit(mirrored, depth, mirrored_fate);
+    bool emit_through = wanted && !hidden && !total && admit(through, depth, through_fate);
     if (wanted && hidden) {
         // The surface lies inside a medium that fills the space on both sides, or has a hole: as if
         // it were not there. The ray goes on as the same ray.
@@ -129,6 +139,17 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids
             atomicAdd(counters.passed, 1u);
         else
             atomicAdd(counters.dropped_nesting, 1u);
+    }
+
+    if (explains && wanted) {
+        lost = lost || (hidden && !emit_through);
+        note_refraction(media_top(beyond), ior1, ior2, c2);
+        note_children(reflect_weight, reflected, transmit_weight, refracted,
+                      (solid ? LR_NOTE_BENDS : 0u) | (total ? LR_NOTE_TOTAL : 0u) |
+                          (m.flags & LR_GPU_FRESNEL) * LR_NOTE_FRESNEL |
+                          (absent ? LR_NOTE_HOLE : hidden ? LR_NOTE_HIDDEN : 0u) |
+                          (lost ? LR_NOTE_LOST : 0u) | mirrored_fate << LR_NOTE_REFLECTED_SHIFT |
+                          through_fate << LR_NOTE_REFRACTED_SHIFT);
     }
 
     // The stores come last: on a CPU an atomic waits for all stores before it.

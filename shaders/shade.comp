@@ -11,6 +11,7 @@
 #include "film.glsl"
 #include "inspect.glsl"
 #include "light.glsl"
+#include "notes.glsl"
 #include "pattern.glsl"
 #include "queue.glsl"
 #include "scatter.glsl"
@@ -20,6 +21,26 @@
 #include "texture.glsl"
 
 layout(local_size_x = LR_GROUP_SIZE) in;
+
+// Notes what a light would bring if nothing stood in its way; returns the note's number.
+uint note_sample(gpu_light light, uint number, arriving_light arriving, gpu_material m, surface s,
+                 vec3 n, vec3 wo, vec3 origin, vec3 value, bool reaches)
+{
+    bool directional = (light.flags & LR_GPU_LIGHT_DIRECTIONAL) != 0u;
+    vec3 to_light = light.position - s.position;
+    float distance2 = ex_dot(to_light, to_light), fading = 1.0, highlight = 0.0, spot = 1.0;
+    if (has_falloff)
+        fading = attenuation(light, max(distance2, 7.888609052210118e-31));
+    if (has_specular && m.specular != vec3(0.0))
+        highlight = highlight_at(m, n, wo, arriving.wi);
+    if (has_spots)
+        spot = spot_share(light, arriving.wi);
+    uint none[6] = uint[6](0u, 0u, 0u, 0u, 0u, 0u);
+    return note_light(gpu_light_note(
+        origin, noted_ray, arriving.wi, number, arriving.color,
+        directional ? LR_T_MAX : ex_sqrt(distance2), value, ex_dot(n, arriving.wi), vec3(0.0),
+        highlight, directional ? 1.0 : fading, spot, uint(reaches), 0u, none, 0u, 0u));
+}
 
 // Adds the light of up to four sources from number `first`.
 void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m, surface s, vec3 n,
@@ -48,6 +69,10 @@ void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m,
         blue = replaced(blue, slot, value.z);
         uint shadows = (light.flags & LR_GPU_LIGHT_SHADOWS) != 0u ? 1u : 0u;
         set_ray(rays, slot, shadow_ray(light, origin), shadows);
+        if (explains && lit)
+            noted_lights = replaced(noted_lights, slot,
+                                    note_sample(light, first + l, arriving, m, s, n, wo, origin,
+                                                value, reaches));
         rays.count += reaches ? 1u : 0u;
         shadowed += reaches ? shadows : 0u;
         l++;
@@ -68,6 +93,8 @@ void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m,
         uvec3 depth = uvec3(pick(rays.red, i), pick(rays.green, i), pick(rays.blue, i));
         if (!has_inspect)
             film_accumulate(sum, value * light_left(depth));
+        if (explains && i < rays.count)
+            note_arrival(pick(noted_lights, i), light_left(depth), value * light_left(depth));
         i++;
         if (i >= most)
             break;
@@ -107,7 +134,14 @@ void send_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m
             at_once = inspected_rays(uint(shadowed));
         if (reaches && (!shadowed || has_inspect))
             film_accumulate(sum, at_once);
-        send_light(gpu_shadow_ray(origin, ray.pixel, value, first + l),
+        uint pixel = ray.pixel;
+        if (explains && lit) {
+            pixel = note_sample(light, first + l, arriving, m, s, lit_by, -ray.direction, origin,
+                                value, reaches);
+            if (reaches && !shadowed)
+                note_arrival(pixel, vec3(1.0), value);
+        }
+        send_light(gpu_shadow_ray(origin, pixel, value, first + l),
                    reaches && shadowed && !has_inspect);
         l++;
         if (l >= count)
@@ -144,6 +178,13 @@ void main()
     vec3 weight = weight_after(ray, hit.t, fog);
     bool first_lights = wanted && hidden(work.first_lights) != 0u;
     bool lit = wanted && (m.flags & LR_GPU_LIT) != 0u;
+    if (explains && wanted) {
+        noted_ray = notes.of_hit[index];
+        if (first_lights) {
+            note_air(weight, fog, medium_of(ray));
+            note_surface(s.object, s.position, s.normal, lit_by, ray.direction, color, lit);
+        }
+    }
     if (has_scatter) {
         bool visible = scatter(ray, weight, s, n, lit_by, ids, m, absent, first_lights);
         lit = lit && visible;
@@ -152,12 +193,15 @@ void main()
     if (has_fog && first_lights && !has_inspect)
         film_accumulate(sum, fog);
     vec3 emission = vec3(m.emission_red, m.emission_green, m.emission_blue);
+    vec3 own = weight * (m.ambient * color + emission);
     if (has_inspect) {
         if (first_lights && !absent)
             film_accumulate(sum, inspected_hit(ray, hit.t, s.object, lit_by));
         lit = lit && counts_rays();
     } else if (lit && first_lights) {
-        film_accumulate(sum, weight * (m.ambient * color + emission));
+        film_accumulate(sum, own);
+        if (explains)
+            note_own_light(weight * (m.ambient * color), weight * emission, own);
     }
     uint count = hidden(work.light_count);
     lit = lit && count != 0u;

@@ -6,6 +6,7 @@
 #include "candidates.glsl"
 #include "hole.glsl"
 #include "intersect.glsl"
+#include "notes.glsl"
 #include "obstacle.glsl"
 
 // The rays from one point towards up to four lights, one a component.
@@ -64,7 +65,8 @@ vec3 direction_of(shadow_rays rays, uint l)
     return vec3(pick(rays.x, l), pick(rays.y, l), pick(rays.z, l));
 }
 
-// Adds to the depth of ray l what a primitive takes; returns whether nothing is left.
+// Adds to the depth of ray l what a primitive takes; returns whether nothing is left, and so no other
+// needs to be looked at.
 bool dim(inout shadow_rays rays, uint l, vec2 crossing, float t_max, uint object, uint flags)
 {
     uvec3 add = crosses(crossing, t_max) ? uvec3(LR_SHADOW_OPAQUE) : uvec3(0u);
@@ -72,12 +74,17 @@ bool dim(inout shadow_rays rays, uint l, vec2 crossing, float t_max, uint object
         add = tint(crossing, t_max, load_object_shadow(object));
     if ((flags & LR_FLAG_SHADOW) == 0u)
         add = uvec3(0u);
+    if (explains && add != uvec3(0u))
+        note_obstacle(pick(noted_lights, l), object, crossing, add);
     uvec3 depth = uvec3(pick(rays.red, l), pick(rays.green, l), pick(rays.blue, l));
     depth = min(depth + add, uvec3(LR_SHADOW_OPAQUE));
     rays.red = replaced(rays.red, l, depth.x);
     rays.green = replaced(rays.green, l, depth.y);
     rays.blue = replaced(rays.blue, l, depth.z);
-    return depth == uvec3(LR_SHADOW_OPAQUE);
+    bool dark = depth == uvec3(LR_SHADOW_OPAQUE);
+    if (explains) // all of them are noted
+        dark = false;
+    return dark;
 }
 
 bool dim_plane(inout shadow_rays rays, uint l, uint i, vec3 o, vec3 d, float t_max)
@@ -156,7 +163,7 @@ void trace_shadows(inout shadow_rays rays, vec3 o, uint most)
                     break;
             }
             bits = bits * rays.shadowed;
-            if (has_transparent_planes) {
+            if (has_transparent_planes || explains) {
                 FOR_EACH_PAIR(1u, dim_plane(rays, l, i, o, d, t_max))
             } else if ((p.flags & LR_FLAG_SHADOW) != 0u) {
                 rays.red |= bits * LR_SHADOW_OPAQUE;

@@ -4,6 +4,7 @@
 #include "film.glsl"
 #include "hole.glsl"
 #include "light.glsl"
+#include "notes.glsl"
 #include "obstacle.glsl"
 #include "shadow_queue.glsl"
 #include "visit.glsl"
@@ -12,10 +13,12 @@ layout(local_size_x = LR_GROUP_SIZE) in;
 
 uint met = 0u, dark = 0u;  // bit k: ray k met something, and none of its light is left
 uvec3 ray_depth[RAYS];     // optical depths so far, in scenes with transparent shadow casters
+uint noted[RAYS];          // the notes of the lights, in kernels that explain
 
 // What stands in the way: whether its material lets light through, and then its record for shadows.
 struct obstacle {
     bool there, transparent;
+    uint object;
     uvec4 shadow;
 };
 
@@ -27,7 +30,7 @@ obstacle joint_obstacle(bool valid, uint object, uint flags)
         shadow = held_row(hold_rows(at, 1u), at, 0u);
     }
     return obstacle(valid && (flags & LR_FLAG_SHADOW) != 0u, (flags & LR_FLAG_TRANSPARENT) != 0u,
-                    shadow);
+                    object, shadow);
 }
 
 // What it takes from ray k.
@@ -35,16 +38,21 @@ void dim(uint k, obstacle by, vec2 crossing)
 {
     float t_max = ray_limit[k];
     bool meets = by.there && crosses(crossing, t_max), blocked = meets;
+    uvec3 takes = uvec3(LR_SHADOW_OPAQUE);
     if (has_transparent) {
-        uvec3 depth = uvec3(LR_SHADOW_OPAQUE);
         if (by.transparent)
-            depth = tint(crossing, t_max, by.shadow);
-        depth = min(ray_depth[k] + (meets ? depth : uvec3(0u)), uvec3(LR_SHADOW_OPAQUE));
+            takes = tint(crossing, t_max, by.shadow);
+        uvec3 depth = min(ray_depth[k] + (meets ? takes : uvec3(0u)), uvec3(LR_SHADOW_OPAQUE));
         ray_depth[k] = depth;
         blocked = depth == uvec3(LR_SHADOW_OPAQUE);
     }
     met |= meets ? 1u << (k & 31u) : 0u;
     dark |= blocked ? 1u << (k & 31u) : 0u;
+    if (explains) {
+        if (meets)
+            note_obstacle(noted[k], by.object, crossing, takes);
+        blocked = false; // all of them are noted
+    }
     ray_limit[k] = blocked ? -1.0 : t_max;
 }
 
@@ -132,8 +140,9 @@ uint shadow_index(uint k)
 {
     uint first = work.light * work.shadow_room;
     uint i = min(packet_index(k), max(work.count, 1u) - 1u);
-    if (hidden(work.sorted) != 0u)
-        i = shadow_order[first + i];
+    if (!explains) // which has its notes there
+        if (hidden(work.sorted) != 0u)
+            i = shadow_order[first + i];
     return first + i;
 }
 
@@ -148,6 +157,8 @@ void main()
         ray_limit[k] = packet_index(k) < work.count ? ray.w : -1.0;
         ray_inv_a[k] = ex_rcp(ex_dot(ray.xyz, ray.xyz));
         ray_depth[k] = uvec3(0u);
+        if (explains)
+            noted[k] = job.pixel;
         if (has_world_tree)
             slab_ready(k, frame.reach);
     }
@@ -162,8 +173,17 @@ void main()
         bool lit = wanted && ((dark >> (k & 31u)) & 1u) == 0u;
         film_sum sum = film_zero();
         film_accumulate(sum, value);
+        uint pixel = job.pixel;
+        if (explains) {
+            vec3 left = vec3(lit ? 1.0 : 0.0);
+            if (has_transparent)
+                left = light_left(depth_of(k));
+            if (wanted)
+                note_arrival(job.pixel, left, job.value * left);
+            pixel = 0u;
+        }
         if (lit)
-            film_add(job.pixel, sum);
+            film_add(pixel, sum);
         count += uint(wanted);
         blocked += uint(wanted) & (met >> (k & 31u)) & 1u;
         k++;

@@ -9,6 +9,7 @@
 #include "batch.glsl"
 #include "film.glsl"
 #include "inspect.glsl"
+#include "notes.glsl"
 #include "queue.glsl"
 #include "trace.glsl"
 
@@ -51,6 +52,8 @@ void main()
     COUNT(counters.reflected_hits, uint(hit && kind == LR_KIND_REFLECTED))
     COUNT(counters.refracted_hits, uint(hit && kind == LR_KIND_REFRACTED))
     COUNT(counters.traced, uint(wanted))
+    if (explains && wanted)
+        note_ray(ray, met.t, met.primitive);
     if (wanted && !hit) {
         film_sum sum = film_zero();
         vec3 fog;
@@ -62,8 +65,14 @@ void main()
             beyond = inspected_rays(1u);
         film_accumulate(sum, beyond);
         film_add(ray.pixel, sum);
+        if (explains) {
+            note_air(weight, fog, medium_of(ray));
+            note_background(beyond);
+        }
     }
     // Last, because on a CPU an atomic waits for all stores before it.
+    if (explains && hit)
+        notes.of_hit[slot] = noted_ray;
     if (hit)
         store_hit(slot, gpu_hit(index, met.t, met.primitive, met.object));
 }

@@ -121,6 +121,37 @@ typedef struct lr_scene_facts {
 
 void lr_scene_get_facts(const lr_scene *scene, lr_scene_facts *facts);
 
+#define LR_NO_INDEX UINT32_MAX /* in place of the number of an object, a ray, ... */
+
+/* What stands in the scene's text about an object, a material, a light. Numbers begin at 0; strings
+ * live as long as the scene. Lines are those of the scene's file, 0 where it has none. */
+typedef struct lr_object_info {
+    const char *kind; /* as the scene language calls it */
+    const char *mesh; /* of a mesh the file and the part of it; NULL */
+    uint32_t line, material;
+} lr_object_info;
+
+typedef struct lr_material_info {
+    const char *name; /* NULL for one without */
+    uint32_t line;
+    double ambient[3], diffuse[3], specular[3], reflect[3], transmit[3]; /* without the colour */
+    double shininess, ior;
+    bool phong, fresnel;
+} lr_material_info;
+
+typedef struct lr_light_info {
+    const char *kind; /* as the scene language calls it */
+    uint32_t line;
+    double color[3], intensity, falloff;
+    bool shadows;
+    bool added; /* the scene has no lights, so this one suits the camera */
+} lr_light_info;
+
+/* False when there is none of this number. */
+bool lr_scene_get_object(const lr_scene *scene, uint32_t index, lr_object_info *info);
+bool lr_scene_get_material(const lr_scene *scene, uint32_t index, lr_material_info *info);
+bool lr_scene_get_light(const lr_scene *scene, uint32_t index, lr_light_info *info);
+
 /* The name of a camera, NULL for the only one of a scene. */
 const char *lr_scene_camera_name(const lr_scene *scene, uint32_t index);
 
@@ -269,5 +300,119 @@ typedef struct lr_render_stats {
 /* Renders the scene; the caller frees *picture. stats may be NULL. */
 lr_status lr_render(lr_device *device, const lr_scene *scene, const lr_render_options *options,
                     lr_picture *picture, lr_render_stats *stats, lr_error *error);
+
+/* ---- Explaining a pixel --------------------------------------------------------------------
+ *
+ * The tree of rays behind one sample of a pixel, noted by the kernels that make the picture, so all
+ * floats are the device's own. Positions and directions are in the world, lengths in metres,
+ * colours linear RGB. Light that reaches the pixel is counted in steps of 2^-36, the picture's own:
+ * sums of steps are exact (modulo 2^64, where light beyond the picture's range is summed up). */
+
+typedef enum lr_ray_kind {
+    LR_RAY_CAMERA,
+    LR_RAY_REFLECTED,
+    LR_RAY_REFRACTED, /* through a thin sheet, too, which bends nothing */
+    LR_RAY_ONWARD,    /* its parent, behind a surface that is not there for it */
+} lr_ray_kind;
+
+typedef enum lr_ray_cut {
+    LR_CUT_NONE,
+    LR_CUT_DEPTH,  /* not traced: the bounces are used up */
+    LR_CUT_WEIGHT, /* ... its weight is below min_weight */
+} lr_ray_cut;
+
+/* Something on the way of light. */
+typedef struct lr_explained_obstacle {
+    uint32_t object;
+    float distance; /* from where the light would fall */
+    float left[3];  /* share that it lets through */
+} lr_explained_obstacle;
+
+/* The light of one source where a ray meets a surface. */
+typedef struct lr_explained_light {
+    uint32_t light;
+    float origin[3];   /* where it falls, a little off the surface */
+    float wi[3];       /* unit, towards the source */
+    float distance;    /* to it; of directional light 0 */
+    float attenuation; /* 1 / distance^falloff */
+    float spot;        /* share within the cone of a spot light, else 1 */
+    float cosine;      /* cos theta, between the normal and wi; nothing falls there if it is < 0 */
+    float highlight;   /* (h . n)^shininess or Phong's; 0 without specular */
+    float arriving[3]; /* color * intensity * attenuation * spot */
+    float unshadowed[3]; /* what it brings to the pixel if nothing stands in the way */
+    bool tested;         /* that is a step or more, and so what stands in the way was looked for */
+    float left[3];       /* share that comes through all of that */
+    uint32_t first_obstacle, obstacle_count; /* nearest first */
+    uint64_t steps[3];                       /* what it brings */
+} lr_explained_light;
+
+typedef struct lr_explained_ray {
+    uint32_t parent; /* LR_NO_INDEX: none */
+    lr_ray_kind kind;
+    lr_ray_cut cut;  /* if any, `steps` and all behind `weight` are zero */
+    uint32_t depth;  /* bounces from the camera to here */
+    uint32_t passed; /* surfaces from the camera to here that were not there for it */
+    float origin[3], direction[3], weight[3];
+
+    float t;               /* where it meets a surface; 1e15: nowhere */
+    uint32_t medium;       /* the object inside of which it runs; LR_NO_INDEX: none */
+    float weight_there[3]; /* after fog or absorption */
+    float fog[3];          /* light */
+    uint64_t fog_steps[3];
+
+    uint32_t object;     /* LR_NO_INDEX: it sees the background */
+    uint32_t triangle;   /* number in the mesh; LR_NO_INDEX */
+    float background[3]; /* light */
+    float position[3];
+    float normal[3];               /* geometric, unit, outward */
+    float lit_by[3];               /* the normal that light falls by, against the ray */
+    float cosine;                  /* between that and the way back: the sheet's c1 */
+    float color[3];                /* of the material there */
+    bool entering;                 /* from outside */
+    bool lit;                      /* the material shows light: `lights` were asked */
+    bool hidden;                   /* the surface is not there: another medium is on both sides, */
+    bool hole;                     /* ... or its picture is transparent there */
+    bool lost;                     /* more media, or hidden surfaces, than are kept track of */
+    float ambient[3], emission[3]; /* light */
+    uint64_t own_steps[3];         /* background; ambient and emission */
+    uint32_t first_light, light_count;
+
+    /* Only in scenes where something reflects, transmits or has holes: */
+    bool bends;             /* what goes through is refracted, */
+    bool total;             /* ... or not: total internal reflection */
+    bool fresnel;           /* the material's reflectance depends on the angle */
+    uint32_t medium_beyond; /* object, or LR_NO_INDEX */
+    float ior, ior_beyond;  /* the sheet's gamma 1 and 2 */
+    float refracted_cosine; /* the sheet's c2 */
+    float reflectance;      /* by Fresnel's equations */
+    float reflect_weight[3], transmit_weight[3]; /* of the children */
+
+    uint64_t steps[3]; /* what the ray and all its children bring */
+} lr_explained_ray;
+
+typedef struct lr_explanation {
+    uint32_t width, height, x, y;
+    uint32_t sample, samples, depth, seed;
+    /* The camera's ray first, then each behind its parent, reflected rays and all that comes from
+     * them before refracted ones. */
+    lr_explained_ray *rays;
+    uint32_t ray_count;
+    lr_explained_light *lights;
+    uint32_t light_count;
+    lr_explained_obstacle *obstacles;
+    uint32_t obstacle_count;
+    uint64_t sample_steps[3]; /* what the sample brings: the camera ray's steps */
+    uint64_t total_steps[3];  /* all samples */
+    bool saturated;           /* a channel of them left the picture's range */
+    float pixel[3];           /* their mean, as lr_render gives it */
+} lr_explanation;
+
+/* Explains sample `sample` of pixel x, y of the picture that lr_render makes with these options
+ * (but for the crop). LR_ERROR_ARGUMENT: there is no such pixel or sample; LR_ERROR_MEMORY: the
+ * tree has more than some 16,000 rays or 65,000 lights or obstacles. */
+lr_status lr_explain(lr_device *device, const lr_scene *scene, const lr_render_options *options,
+                     uint32_t x, uint32_t y, uint32_t sample, lr_explanation *explanation,
+                     lr_error *error);
+void lr_explanation_free(lr_explanation *explanation);
 
 #endif

@@ -220,6 +220,15 @@ static parse_result store_value(const command *self, const option *o, const char
                  min, max);
         break;
     }
+    case OPTION_POINT: {
+        int64_t low[2] = {0, 0};
+        uint32_t at[2] = {0};
+        good = parse_integers(text, ",", 2, low, o->max, at);
+        *(option_point *)target = (option_point){at[0], at[1], true};
+        snprintf(expected, sizeof expected, "%s in pixels such as 320,240, each from 0 to %lld",
+                 o->value, max);
+        break;
+    }
     case OPTION_RECTANGLE:
         good = parse_rectangle(text, o->max, (option_rectangle *)target);
         snprintf(expected, sizeof expected,

@@ -17,6 +17,7 @@ typedef enum option_kind {
     OPTION_INTEGER,   /* int64_t within min..max */
     OPTION_REAL,      /* double within min..max */
     OPTION_SIZE,      /* option_size, each within min..max: 640x480 */
+    OPTION_POINT,     /* option_point, each at most max: 320,240 */
     OPTION_RECTANGLE, /* option_rectangle, each within min..max: 10,20,64,48 */
     OPTION_CHOICE,    /* const char *, one of choices */
     OPTION_BYTES,     /* int64_t, at least min: 512M, 1.5G, 4096 */
@@ -26,6 +27,11 @@ typedef enum option_kind {
 typedef struct option_size {
     uint32_t width, height;
 } option_size;
+
+typedef struct option_point {
+    uint32_t x, y;
+    bool given;
+} option_point;
 
 typedef struct option_rectangle {
     uint32_t x, y, width, height;
@@ -45,7 +51,7 @@ typedef struct option {
     size_t offset;       /* of the value in the command's own struct, which holds the defaults */
     const char *value;   /* what stands for the value in help, such as "N" */
     const char *help;    /* may hold several lines */
-    int64_t min, max;    /* OPTION_INTEGER, OPTION_REAL, OPTION_SIZE, OPTION_RECTANGLE */
+    int64_t min, max;    /* OPTION_INTEGER, OPTION_REAL, OPTION_SIZE, ..._POINT, ..._RECTANGLE */
     const char *choices; /* OPTION_CHOICE: "srgb|linear" */
     const char *also;    /* other names people try, "a|b": suggested, not accepted */
     bool for_tests;      /* listed last in help */

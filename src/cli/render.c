@@ -1,6 +1,7 @@
 #include "cli/cli.h"
 #include "cli/load.h"
 #include "cli/output.h"
+#include "cli/picture.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
 #include "image/image.h"
@@ -12,10 +13,10 @@
 #include <unistd.h>
 
 typedef struct values {
-    const char *output, *format, *transfer, *camera, *device, *stats;
-    option_size size;
-    int64_t samples, depth, seed, maxval; /* -1: not given */
-    double exposure;                      /* NaN: not given */
+    const char *output, *format, *transfer, *stats;
+    int64_t maxval;  /* -1: not given */
+    double exposure; /* NaN: not given */
+    picture_values picture;
     option_rectangle crop;
     int64_t tile, chunk;
     load_values load;
@@ -41,37 +42,7 @@ static const option options[] = {
      .help = "ppm, png, pfm or exr, whatever the name ends in;\n"
              "default for standard output: ppm",
      .also = "type"},
-    {.name = "size",
-     .kind = OPTION_SIZE,
-     AT(size),
-     .value = "WxH",
-     .min = 1,
-     .max = 32768,
-     .help = "width and height in pixels; default: the scene's",
-     .also = "width|height|resolution|res"},
-    {.name = "spp",
-     .kind = OPTION_INTEGER,
-     AT(samples),
-     .value = "N",
-     .min = 1,
-     .max = 65536,
-     .help = "samples per pixel, 1 to 65536; default: the scene's",
-     .also = "samples"},
-    {.name = "depth",
-     .kind = OPTION_INTEGER,
-     AT(depth),
-     .value = "N",
-     .min = 0,
-     .max = 64,
-     .help = "bounces, 0 to 64, 0 being what the eye sees directly;\ndefault: the scene's",
-     .also = "bounces|max-depth"},
-    {.name = "seed",
-     .kind = OPTION_INTEGER,
-     AT(seed),
-     .value = "N",
-     .min = 0,
-     .max = UINT32_MAX,
-     .help = "of the random numbers, 0 to 4294967295;\ndefault: the scene's"},
+    PICTURE_OPTIONS(values),
     {.name = "maxval",
      .kind = OPTION_INTEGER,
      AT(maxval),
@@ -99,11 +70,6 @@ static const option options[] = {
      .min = -64,
      .max = 64,
      .help = "stops, -64 to 64; 1 is twice as bright;\ndefault: the scene's"},
-    {.name = "camera",
-     .kind = OPTION_TEXT,
-     AT(camera),
-     .value = "NAME",
-     .help = "of the scene's cameras; default: the first"},
     {.name = "crop",
      .kind = OPTION_RECTANGLE,
      AT(crop),
@@ -113,13 +79,6 @@ static const option options[] = {
      .help = "render and write only this part of the picture, in\n"
              "pixels from its top left corner",
      .also = "region|window"},
-    {.name = "device",
-     .kind = OPTION_TEXT,
-     AT(device),
-     .value = "WHICH",
-     .help = "auto (default: a GPU before a CPU), cpu, gpu, or the\n"
-             "index or part of the name that lavaray devices shows",
-     .also = "gpu|cpu"},
     {.name = "stats",
      .kind = OPTION_TEXT,
      AT(stats),
@@ -220,22 +179,17 @@ static int check_values(const command *self, const values *v, const char *scene,
 
 static lr_render_options make_options(const values *v, progress *p)
 {
-    return (lr_render_options){
-        .width = v->size.width,
-        .height = v->size.height,
-        .samples = v->samples >= 0 ? (uint32_t)v->samples : 0,
-        .depth = v->depth >= 0 ? (int32_t)v->depth : 0,
-        .has_depth = v->depth >= 0,
-        .seed = v->seed >= 0 ? (uint32_t)v->seed : 0,
-        .has_seed = v->seed >= 0,
-        .camera = v->camera,
-        .crop = {v->crop.x, v->crop.y, v->crop.width, v->crop.height},
-        .tile_size = (uint32_t)v->tile,
-        .chunk_rays = (uint32_t)v->chunk,
-        .storage_loads = v->storage_loads,
-        .progress = progress_update,
-        .user = p,
-    };
+    lr_render_options made = picture_options(&v->picture);
+    made.crop.x = v->crop.x;
+    made.crop.y = v->crop.y;
+    made.crop.width = v->crop.width;
+    made.crop.height = v->crop.height;
+    made.tile_size = (uint32_t)v->tile;
+    made.chunk_rays = (uint32_t)v->chunk;
+    made.storage_loads = v->storage_loads;
+    made.progress = progress_update;
+    made.user = p;
+    return made;
 }
 
 static int say_interrupted(void)
@@ -262,8 +216,8 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
         fprintf(out, ", crop %u,%u,%u,%u", (unsigned)v->crop.x, (unsigned)v->crop.y,
                 (unsigned)v->crop.width, (unsigned)v->crop.height);
     }
-    if (v->camera) {
-        fprintf(out, ", camera %.200s", v->camera);
+    if (v->picture.camera) {
+        fprintf(out, ", camera %.200s", v->picture.camera);
     }
     if (encoding->exposure != 0) {
         fprintf(out, ", exposure %.7g", (double)encoding->exposure);
@@ -335,7 +289,7 @@ done:
 static int run(const command *self, int argc, char **argv)
 {
     double start = seconds_now();
-    values v = {.samples = -1, .depth = -1, .seed = -1, .maxval = -1, .exposure = NAN};
+    values v = {.picture = PICTURE_DEFAULTS, .maxval = -1, .exposure = NAN};
     int operands;
     parse_result parsed = options_parse(self, argc, argv, &v, &operands);
     if (parsed != PARSE_OK) {
@@ -354,7 +308,7 @@ static int run(const command *self, int argc, char **argv)
     lr_scene *scene = NULL;
     lr_device *device = NULL;
     progress_phase(&p, "reading scene");
-    render_record record = {.scene = path, .output = v.output, .camera = v.camera};
+    render_record record = {.scene = path, .output = v.output, .camera = v.picture.camera};
     lr_scene_info scene_info;
     lr_error error = {0};
     code = load_scene(path, &v.load, v.quiet, &scene, &p);
@@ -378,7 +332,7 @@ static int run(const command *self, int argc, char **argv)
 
     progress_phase(&p, "opening device");
     double device_start = seconds_now();
-    lr_device_desc desc = {.select = v.device, .validation = validation_wanted()};
+    lr_device_desc desc = {.select = v.picture.device, .validation = validation_wanted()};
     lr_status status = lr_device_open(&desc, &device, &error);
     record.device_seconds = seconds_now() - device_start;
     if (status != LR_OK) {

@@ -13,8 +13,8 @@
 #define EXTENSIONS_MAX 512
 #define INSTANCE_EXTENSIONS_MAX 16
 
-/* What each stage needs beyond what Vulkan guarantees; render/renderer.c binds as many. */
-#define STORAGE_BUFFERS_NEEDED 7
+/* What each stage needs beyond what Vulkan guarantees; render/wavefront_setup.c binds as many. */
+#define STORAGE_BUFFERS_NEEDED 10
 #define GROUP_SIZE_NEEDED 64
 
 double lr_now(void)

@@ -162,7 +162,7 @@ static lr_status run_pass(lr_wavefront *w, uint32_t generation, struct gpu_work 
 {
     lr_status status = wavefront_open_generation(w, generation, error);
     if (!status)
-        status = make_shadow_room(w, rays, generation > 0, error);
+        status = make_shadow_room(w, rays, generation > 0 && !explains(w), error);
     if (!status)
         status = lr_commands_begin(w->device, error);
     if (status)

@@ -31,7 +31,8 @@ typedef struct lr_wavefront {
     union {
         struct {
             lr_buffer frame, rows, film, film_host, counters, counters_host, hits, none;
-            lr_buffer found, shadow_rays, cells, order; /* in scenes with trees */
+            lr_buffer found, shadow_rays, cells; /* in scenes with trees */
+            lr_buffer order;                     /* there too; in kernels that explain: the notes */
         };
         lr_buffer buffers[12]; /* all of them */
     };

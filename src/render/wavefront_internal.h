@@ -24,6 +24,12 @@ static inline bool has_trees(const lr_wavefront *w)
     return w->scene->constants[LR_SPEC_TREES];
 }
 
+/* The rays are noted: LR_SPEC_EXPLAIN. */
+static inline bool explains(const lr_wavefront *w)
+{
+    return w->scene->constants[LR_SPEC_EXPLAIN];
+}
+
 /* Opens the queues of a pass over a generation and points the sets at them. */
 lr_status wavefront_open_generation(lr_wavefront *w, uint32_t generation, lr_error *error);
 void wavefront_close_if_empty(lr_wavefront *w, lr_queue *queue);

@@ -82,6 +82,12 @@ static VkDeviceSize shadow_size(const lr_wavefront *w)
     return has_trees(w) ? LR_SHADOW_LIGHTS * segment : 16;
 }
 
+/* What explains does not sort, and has its notes there. */
+static VkDeviceSize order_size(const lr_wavefront *w)
+{
+    return explains(w) ? sizeof(struct gpu_notes) : shadow_size(w) / 8;
+}
+
 static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *error)
 {
     uint32_t constants[LR_SPEC_COUNT];
@@ -93,7 +99,7 @@ static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *er
     constants[LR_SPEC_SHUFFLE] = w->device->shuffle_size >= LR_BATCH;
     /* Only the shadow rays of children are sorted. */
     bool trees = has_trees(w), packets = w->rays_at_once > 1;
-    bool sorts = trees && w->scene->constants[LR_SPEC_SCATTER];
+    bool sorts = trees && !explains(w) && w->scene->constants[LR_SPEC_SCATTER];
     const struct {
         const uint32_t *words;
         size_t size;
@@ -139,7 +145,7 @@ static lr_status create_buffers(lr_wavefront *w, lr_error *error)
         {&w->found, LR_BUFFER_TEXEL, found_size(w), "the nearest hits"},
         {&w->shadow_rays, LR_BUFFER_TEXEL, shadow_size(w), "the queue of shadow rays"},
         {&w->cells, LR_BUFFER_STORAGE, has_trees(w) ? CELLS_SIZE : 16, "sorting"},
-        {&w->order, LR_BUFFER_STORAGE, shadow_size(w) / 8, "the order of shadow rays"},
+        {&w->order, LR_BUFFER_STORAGE, order_size(w), "the order of shadow rays"},
         {&w->none, LR_BUFFER_TEXEL, 256, "nothing"},
     };
     lr_status status = LR_OK;

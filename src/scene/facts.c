@@ -4,11 +4,16 @@
 #include "scene/bounds.h"
 #include "scene/fingerprint.h"
 
-static const char *const kind_names[LR_OBJECT_KINDS] = {
+static const char *const object_kinds[LR_OBJECT_KINDS] = {
     [LR_SPHERE] = "sphere", [LR_PLANE] = "plane",         [LR_BOX] = "box",
     [LR_DISK] = "disk",     [LR_RECTANGLE] = "rectangle", [LR_CYLINDER] = "cylinder",
     [LR_CONE] = "cone",     [LR_TRIANGLE] = "triangle",   [LR_MESH] = "mesh",
 };
+
+const char *lr_object_kind_name(lr_object_kind kind)
+{
+    return object_kinds[kind];
+}
 
 /* A point and up to three spans around it, in the world: what the object reaches along each axis is
  * at most the root of the sum of their squares there (round), or the sum of their sizes (angular).
@@ -97,7 +102,7 @@ static void count_objects(const lr_scene *scene, lr_scene_facts *facts)
 {
     lr_bounds bounds = lr_bounds_empty();
     for (int kind = 0; kind < LR_OBJECT_KINDS; kind++)
-        facts->objects[kind].name = kind_names[kind];
+        facts->objects[kind].name = lr_object_kind_name(kind);
     for (uint32_t i = 0; i < scene->object_count; i++) {
         const lr_object *object = &scene->objects[i];
         facts->objects[object->kind].count++;

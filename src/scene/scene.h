@@ -192,6 +192,9 @@ struct lr_scene {
     } image;
 };
 
+/* As the scene language calls it. */
+const char *lr_object_kind_name(lr_object_kind kind);
+
 /* The light of a scene that names none: from above and to the left of the camera. */
 lr_light lr_default_light(const lr_camera *camera);
 

@@ -123,7 +123,7 @@ void put_light(gpu_light x)
 void put_ray(gpu_ray x)
 {
     put_vec3(x.origin); put(x.pixel); put_vec3(x.direction); put(x.state); put_vec3(x.weight);
-    put(x.unused); put(x.media0); put(x.media1); put(x.media2); put(x.media3);
+    put(x.note); put(x.media0); put(x.media1); put(x.media2); put(x.media3);
 }
 
 void put_hit(gpu_hit x)

@@ -17,7 +17,9 @@ enum {
     OP_FUNCTION = 54,
     OP_DECORATE = 71,
     OP_BRANCH_CONDITIONAL = 250,
+    OP_ACCESS_CHAIN = 65,
     DECORATION_SPEC_ID = 1,
+    DECORATION_BINDING = 33,
     IDS_MAX = 131072,
 };
 
@@ -145,6 +147,7 @@ static void test_what_is_ruled_out_is_gone(void **state)
         {LR_SPEC_BOXES, 1, 500},    {LR_SPEC_SPHERES, 1, 500},    {LR_SPEC_MEDIA, 1, 1000},
         {LR_SPEC_FRESNEL, 1, 300},  {LR_SPEC_SPECULAR, 1, 500},   {LR_SPEC_PATTERNS, 1, 1000},
         {LR_SPEC_SCATTER, 1, 2000}, {LR_SPEC_TEXTURES, 1, 1000},  {LR_SPEC_FOG, 1, 100},
+        {LR_SPEC_EXPLAIN, 0, 500},  {LR_SPEC_EXPLAIN, 1, 2000},
     };
     uint32_t constants[LR_SPEC_COUNT];
     for (int i = 0; i < LR_SPEC_COUNT; i++)
@@ -163,13 +166,37 @@ static void test_what_is_ruled_out_is_gone(void **state)
     }
 }
 
+/* Of what notes rays nothing is left in kernels that make pictures. */
+static void test_pictures_have_no_notes(void **state)
+{
+    (void)state;
+    for (int kernel = 0; kernel < KERNEL_COUNT; kernel++)
+        for (uint32_t explains = 0; explains < 2; explains++) {
+            uint32_t constants[LR_SPEC_COUNT], notes = 0, uses = 0;
+            for (int i = 0; i < LR_SPEC_COUNT; i++)
+                constants[i] = i != LR_SPEC_EXPLAIN || explains;
+            lr_spirv module = specialize(kernel, constants);
+            EACH(at, &module)
+            {
+                const uint32_t *w = &module.words[at];
+                if ((w[0] & 0xFFFF) == OP_DECORATE && w[2] == DECORATION_BINDING &&
+                    w[3] == LR_BIND_NOTES)
+                    notes = w[1];
+                uses += (w[0] & 0xFFFF) == OP_ACCESS_CHAIN && notes && w[3] == notes;
+            }
+            bool noting = explains && kernels[kernel].words != camera_spv;
+            assert_int_equal(uses > 0, noting);
+            lr_spirv_free(&module);
+        }
+}
+
 /* Constants that are not given keep what the module says. */
 static void test_defaults(void **state)
 {
     (void)state;
     uint32_t defaults[LR_SPEC_COUNT];
     for (int i = 0; i < LR_SPEC_COUNT; i++)
-        defaults[i] = 1;
+        defaults[i] = i != LR_SPEC_EXPLAIN;
     lr_spirv given = specialize(0, defaults), left;
     assert_int_equal(lr_spirv_specialize(trace_spv, sizeof trace_spv / 4, NULL, 0, &left, NULL),
                      LR_OK);
@@ -209,9 +236,14 @@ static void test_truncated(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_all_and_none),   cmocka_unit_test(test_each_alone_and_missing),
-        cmocka_unit_test(test_random_choices), cmocka_unit_test(test_what_is_ruled_out_is_gone),
-        cmocka_unit_test(test_defaults),       cmocka_unit_test(test_truncated),
+        cmocka_unit_test(test_all_and_none),
+        cmocka_unit_test(test_each_alone_and_missing),
+        cmocka_unit_test(test_random_choices),
+        cmocka_unit_test(test_what_is_ruled_out_is_gone),
+        cmocka_unit_test(test_pictures_have_no_notes),
+        cmocka_unit_test(test_pictures_have_no_notes),
+        cmocka_unit_test(test_defaults),
+        cmocka_unit_test(test_truncated),
     };
     return cmocka_run_group_tests(tests, spirv_setup, spirv_teardown);
 }
