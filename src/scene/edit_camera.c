@@ -80,7 +80,7 @@ static void copy_to(edit *e, size_t offset)
 
 static bool is_alias(const edit *e, const lr_node *node)
 {
-    return e->text[node->start] == '*';
+    return node->start < e->length && e->text[node->start] == '*';
 }
 
 /* How many numbers the field holds; 0: it is not a matter of the pose. */

@@ -204,15 +204,21 @@ static void place_empty(builder *b, lr_node *node)
     node->offset = (uint32_t)offset;
 }
 
+/* 0 behind the end of the text. */
+static char byte_at(const builder *b, size_t offset)
+{
+    return offset < b->report->length ? b->report->text[offset] : 0;
+}
+
 /* From its opening to its closing quote; what is not there has no bytes. */
 static void place_scalar(const builder *b, lr_node *node, struct fy_token *token)
 {
     const struct fy_mark *end = token ? fy_token_end_mark(token) : NULL;
     node->start = token ? node->offset : b->last_offset;
     node->end = end ? (uint32_t)end->input_pos : node->start;
-    char quote = b->report->text[node->start];
+    char quote = byte_at(b, node->start);
     bool quoted = node->kind == LR_NODE_QUOTED && (quote == '"' || quote == '\'');
-    if (quoted && node->end < b->report->length && b->report->text[node->end] == quote)
+    if (quoted && byte_at(b, node->end) == quote)
         node->end++;
 }
 
@@ -356,7 +362,7 @@ static void close_frame(builder *b, struct fy_event *event)
         lr_names_free(&seen);
     }
     /* The end of one without brackets is noticed only at what follows. */
-    char bracket = b->report->text[node->offset];
+    char bracket = byte_at(b, node->offset);
     const struct fy_mark *end = fy_event_end_mark(event);
     bool flow = (bracket == '[' || bracket == '{') && end;
     node->start = node->offset;

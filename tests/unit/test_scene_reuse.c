@@ -139,6 +139,7 @@ static void test_edits(void **state)
     put_ply(2);
     lr_scene *young = load_after(scene, NULL);
     put_ply(3);
+    lr_scene_destroy(scene);
     scene = edit(young, "---t");
     lr_scene_destroy(scene);
 }
@@ -174,6 +175,30 @@ static void test_missing(void **state)
     lr_file_list_free(&files);
     lr_scene_destroy(after);
     lr_scene_destroy(before);
+}
+
+/* A picture inside of a model goes with the model. */
+static void test_embedded(void **state)
+{
+    (void)state;
+    put_triangle_bin();
+    put_text("t.gltf",
+             GLTF("{\"mesh\": 0}", ", \"material\": 0",
+                  "\"materials\": [{\"pbrMetallicRoughness\": {\"baseColorTexture\": "
+                  "{\"index\": 0}}}], \"textures\": [{\"source\": 0}], \"images\": [{\"uri\": "
+                  "\"data:image/png;base64,UDMgMSAxIDI1NSA0IDUgNgo=\"}],"));
+    put_text("s.yaml", "camera: {}\nobjects: [{mesh: {file: t.gltf}}]\n");
+    rest();
+    lr_scene *before = load_after(NULL, NULL);
+    lr_file_list files = {0};
+    lr_scene *after = load_after(before, &files);
+    assert_int_equal(before->texture_count, 1);
+    assert_int_equal(after->texture_count, 1);
+    assert_true(after->textures[0].bytes == before->textures[0].bytes);
+    lr_scene_destroy(before);
+    assert_as_new(after, &files);
+    lr_file_list_free(&files);
+    lr_scene_destroy(after);
 }
 
 /* Limits and permissions are those of the load, not of the one before. */
@@ -221,9 +246,8 @@ static void test_threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_edits),
-        cmocka_unit_test(test_missing),
-        cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_edits),    cmocka_unit_test(test_missing),
+        cmocka_unit_test(test_embedded), cmocka_unit_test(test_limits),
         cmocka_unit_test(test_threads),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
