@@ -1,5 +1,6 @@
 #include "cli/cli.h"
 #include "cli/load.h"
+#include "cli/picture.h"
 #include "cli/progress.h"
 #include "preview/preview.h"
 
@@ -8,10 +9,9 @@
 #include <stdio.h>
 
 typedef struct values {
-    const char *camera, *device, *screenshot, *events;
-    option_size size;
-    int64_t samples, depth, seed; /* -1: not given */
-    double exposure;              /* NaN: not given */
+    const char *screenshot, *events;
+    double exposure; /* NaN: not given */
+    picture_values picture;
     load_values load;
     bool quiet;
 } values;
@@ -19,38 +19,7 @@ typedef struct values {
 #define AT(member) .offset = offsetof(values, member)
 
 static const option options[] = {
-    {.name = "size",
-     .kind = OPTION_SIZE,
-     AT(size),
-     .value = "WxH",
-     .min = 1,
-     .max = 16384,
-     .help = "width and height of the window in pixels; default: the\nscene's, if the screen is as "
-             "large",
-     .also = "width|height|resolution|res"},
-    {.name = "spp",
-     .kind = OPTION_INTEGER,
-     AT(samples),
-     .value = "N",
-     .min = 1,
-     .max = 65536,
-     .help = "samples per pixel in the end, 1 to 65536; default: the\nscene's",
-     .also = "samples"},
-    {.name = "depth",
-     .kind = OPTION_INTEGER,
-     AT(depth),
-     .value = "N",
-     .min = 0,
-     .max = 64,
-     .help = "bounces, 0 to 64; default: the scene's",
-     .also = "bounces|max-depth"},
-    {.name = "seed",
-     .kind = OPTION_INTEGER,
-     AT(seed),
-     .value = "N",
-     .min = 0,
-     .max = UINT32_MAX,
-     .help = "of the random numbers, 0 to 4294967295;\ndefault: the scene's"},
+    PICTURE_OPTIONS(values),
     {.name = "exposure",
      .kind = OPTION_REAL,
      AT(exposure),
@@ -58,18 +27,6 @@ static const option options[] = {
      .min = -64,
      .max = 64,
      .help = "stops, -64 to 64; default: the scene's"},
-    {.name = "camera",
-     .kind = OPTION_TEXT,
-     AT(camera),
-     .value = "NAME",
-     .help = "of the scene's cameras; default: the first"},
-    {.name = "device",
-     .kind = OPTION_TEXT,
-     AT(device),
-     .value = "WHICH",
-     .help = "auto (default: a GPU before a CPU), cpu, gpu, or the\n"
-             "index or part of the name that lavaray devices shows",
-     .also = "gpu|cpu"},
     {.name = "screenshot",
      .kind = OPTION_TEXT,
      AT(screenshot),
@@ -111,15 +68,8 @@ static lr_preview_options make_options(const values *v, const char *path)
         .load = {.allow_path = v->load.allow_path,
                  .max_triangles = (uint64_t)v->load.max_triangles,
                  .max_memory = (uint64_t)v->load.max_memory},
-        .device = {.select = v->device, .validation = validation_wanted()},
-        .render = {.width = v->size.width,
-                   .height = v->size.height,
-                   .samples = v->samples >= 0 ? (uint32_t)v->samples : 0,
-                   .depth = v->depth >= 0 ? (int32_t)v->depth : 0,
-                   .has_depth = v->depth >= 0,
-                   .seed = v->seed >= 0 ? (uint32_t)v->seed : 0,
-                   .has_seed = v->seed >= 0,
-                   .camera = v->camera},
+        .device = {.select = v->picture.device, .validation = validation_wanted()},
+        .render = picture_options(&v->picture),
         .has_exposure = !isnan(v->exposure),
         .exposure = v->exposure,
         .screenshot = v->screenshot,
@@ -168,7 +118,7 @@ static int show(values *v, const char *path)
 
 static int run(const command *self, int argc, char **argv)
 {
-    values v = {.samples = -1, .depth = -1, .seed = -1, .exposure = NAN};
+    values v = {.picture = PICTURE_DEFAULTS, .exposure = NAN};
     int operands;
     parse_result parsed = options_parse(self, argc, argv, &v, &operands);
     if (parsed != PARSE_OK)

@@ -15,6 +15,11 @@ void lr_board_end_session(lr_board *board, lr_session *session)
 {
     char text[sizeof board->validation] = "";
     uint32_t messages = lr_session_destroy(session, text, sizeof text);
+    lr_board_note_validation(board, messages, text);
+}
+
+void lr_board_note_validation(lr_board *board, uint32_t messages, const char *text)
+{
     lr_board_lock(board);
     if (messages > 0 && board->validation_messages == 0)
         snprintf(board->validation, sizeof board->validation, "%s", text);

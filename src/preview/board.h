@@ -64,6 +64,9 @@ typedef struct lr_board {
 lr_status lr_board_init(lr_board *board, lr_error *error);
 void lr_board_destroy(lr_board *board);
 
+/* Counts what the validation layer had to say about a device. */
+void lr_board_note_validation(lr_board *board, uint32_t messages, const char *text);
+
 /* Destroys a session, which may be NULL, and keeps what the validation layer had to say. */
 void lr_board_end_session(lr_board *board, lr_session *session);
 

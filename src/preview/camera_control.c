@@ -12,6 +12,12 @@
 #define FOV_MIN 1.0
 #define FOV_MAX 170.0
 
+/* What is nearer, as a share of the distance to the focus, is not drawn. */
+#define NEAR_SHARE 1e-3
+
+/* Pixels: what lies farther aside is drawn there, which drawing libraries can still count in. */
+#define SCREEN_MAX 1e6
+
 /* From the eye to the focus, over the greatest coordinate: what doubles still resolve well. */
 #define NEAREST 1e-9
 
@@ -67,6 +73,32 @@ lr_vec3 lr_camera_point(const lr_camera *camera, lr_screen screen, double x, dou
     double size = f.distance * pixel_size(camera, screen);
     return lr_vec3_add(camera->to, mix3(f.right, (x - screen.width * 0.5) * size, f.up,
                                         (screen.height * 0.5 - y) * size));
+}
+
+bool lr_camera_project(const lr_camera *camera, lr_screen screen, lr_vec3 a, lr_vec3 b,
+                       double ends[4])
+{
+    frame f = frame_of(camera);
+    lr_vec3 forward = lr_vec3_cross(f.up, f.right);
+    double nearest = f.distance * NEAR_SHARE, pixel = pixel_size(camera, screen);
+    lr_vec3 from_eye[2] = {lr_vec3_sub(a, camera->from), lr_vec3_sub(b, camera->from)};
+    double depth[2] = {lr_vec3_dot(from_eye[0], forward), lr_vec3_dot(from_eye[1], forward)};
+    if (depth[0] < nearest && depth[1] < nearest)
+        return false;
+    for (int i = 0; i < 2; i++) {
+        lr_vec3 p = from_eye[i];
+        double z = depth[i];
+        if (z < nearest) {
+            double share = (nearest - z) / (depth[1 - i] - z);
+            p = mix3(p, 1 - share, from_eye[1 - i], share);
+            z = nearest;
+        }
+        double x = screen.width * 0.5 + lr_vec3_dot(p, f.right) / (z * pixel);
+        double y = screen.height * 0.5 - lr_vec3_dot(p, f.up) / (z * pixel);
+        ends[2 * i] = clamp(x, -SCREEN_MAX, SCREEN_MAX);
+        ends[2 * i + 1] = clamp(y, -SCREEN_MAX, SCREEN_MAX);
+    }
+    return true;
 }
 
 /* The vector turned by degrees about `up`, to its own right, and then towards `up`. */

@@ -17,6 +17,11 @@ typedef struct lr_screen {
 /* The point of the focus plane that is seen at (x, y). */
 lr_vec3 lr_camera_point(const lr_camera *camera, lr_screen screen, double x, double y);
 
+/* Where the line from a to b is seen: from (ends[0], ends[1]) to (ends[2], ends[3]). What is nearer
+ * than a thousandth of the distance to the focus is cut off; false when nothing is left. */
+bool lr_camera_project(const lr_camera *camera, lr_screen screen, lr_vec3 a, lr_vec3 b,
+                       double ends[4]);
+
 /* Moves the eye around `to`, by degrees to the right and up as seen from it. */
 lr_camera lr_camera_orbit(lr_camera camera, double right, double up);
 

@@ -24,6 +24,7 @@ static void dismiss(lr_view *v)
     v->help = false;
     v->message_until = 0;
     v->overlay_changed = true;
+    lr_view_forget_explained(v);
     if (lr_window_is_full_screen(&v->window))
         lr_window_toggle_full_screen(&v->window);
 }
@@ -54,6 +55,11 @@ static void focus(lr_view *v)
     lr_vec3 point = lr_camera_point(&v->wish.camera, screen, v->window.x, v->window.y);
     v->wish.camera = lr_camera_focus(v->wish.camera, point);
     lr_view_wish_picture(v);
+}
+
+static void explain(lr_view *v)
+{
+    lr_view_explain(v, v->window.x, v->window.y);
 }
 
 static void set_fov(lr_view *v, double factor)
@@ -168,6 +174,7 @@ static const struct {
     const char *name, *help; /* NULL: is in another line's */
 } keys[] = {
     {'f', focus, "f", "focus on what is under the cursor"},
+    {'e', explain, "e", "explain the pixel under the cursor"},
     {'r', reset, "r Home", "back to the scene's camera"},
     {LR_KEY_HOME, reset, NULL, NULL},
     {LR_KEY_PAGE_UP, narrower, "PgUp PgDn", "field of view"},
@@ -219,6 +226,7 @@ char *lr_view_help(void)
                                 "wheel           nearer, farther\n"
                                 "middle drag     move sideways (also Shift and drag)\n"
                                 "right drag      look around, with W A S D Q E fly\n"
+                                "click           explain that pixel; its rays stay when the camera moves\n"
                                 "double click    focus on that place\n"
                                 "1 ... 9         the scene's cameras\n";
     char *text = NULL;

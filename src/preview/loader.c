@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "preview/window.h"
+#include "render/explain.h"
 #include "scene/save_camera.h"
 
 /* A device that fails so often without a picture in between is given up. */
@@ -116,6 +117,18 @@ static bool quitting(lr_loader *l)
     return quit;
 }
 
+static void close_explainer(lr_loader *l)
+{
+    char text[sizeof l->board->validation] = "";
+    if (!l->explainer)
+        return;
+    lr_device_end(l->explainer);
+    uint32_t messages = lr_device_validation_messages(l->explainer, text, sizeof text);
+    lr_device_close(l->explainer);
+    l->explainer = NULL;
+    lr_board_note_validation(l->board, messages, text);
+}
+
 static bool keep_loading(void *user, const char *what, double fraction)
 {
     (void)what, (void)fraction;
@@ -160,6 +173,24 @@ static void load(lr_loader *l)
     lr_board_unlock(l->board);
 }
 
+/* The settings of the picture that is wished for, but for its camera, which is copied to *camera.
+ * Under the board's lock. */
+static lr_settings wished_settings(lr_loader *l, lr_camera *camera)
+{
+    const lr_wish *wish = &l->board->wish;
+    *camera = wish->camera;
+    return (lr_settings){
+        .width = wish->width ? wish->width : 1,
+        .height = wish->height ? wish->height : 1,
+        .samples = wish->samples,
+        .depth = wish->depth,
+        .seed = wish->seed,
+        .camera = camera,
+        .inspect = wish->inspect,
+        .trees = &l->trees,
+    };
+}
+
 /* Makes a session of the scene and hands it to the renderer. */
 static void build(lr_loader *l)
 {
@@ -167,17 +198,8 @@ static void build(lr_loader *l)
     lr_session *session;
     lr_error error = {0};
     lr_board_lock(b);
-    lr_camera camera = b->wish.camera;
-    lr_settings settings = {
-        .width = b->wish.width ? b->wish.width : 1,
-        .height = b->wish.height ? b->wish.height : 1,
-        .samples = b->wish.samples,
-        .depth = b->wish.depth,
-        .seed = b->wish.seed,
-        .camera = &camera,
-        .inspect = b->wish.inspect,
-        .trees = &l->trees,
-    };
+    lr_camera camera;
+    lr_settings settings = wished_settings(l, &camera);
     lr_device_desc device = l->device;
     lr_board_unlock(b);
     set_busy(l, true);
@@ -293,6 +315,42 @@ static void save_camera(lr_loader *l, uint32_t index, const lr_camera *camera)
     say(l, "saved the camera in %s", l->path);
 }
 
+/* Explains a pixel of the picture that is shown, on a device of its own: the renderer goes on. */
+static void explain(lr_loader *l, uint32_t x, uint32_t y)
+{
+    lr_board *b = l->board;
+    lr_camera camera;
+    lr_explanation explanation = {0};
+    lr_error error = {0};
+    static const lr_render_options options;
+    lr_board_lock(b);
+    lr_settings settings = wished_settings(l, &camera);
+    double far = l->news.size > 0 ? l->news.size : 1;
+    lr_board_unlock(b);
+    settings.inspect = LR_INSPECT_LIGHT;
+    lr_status status = LR_OK;
+    if (!l->explainer)
+        status = lr_device_open(&l->device, &l->explainer, &error);
+    if (!status)
+        status = lr_explain_picture(l->explainer, l->scene->scene, &settings, &options, x, y, 0,
+                                    &explanation, &error);
+    lr_explained_pixel *explained = NULL;
+    if (!status)
+        explained = lr_explained_pixel_create(l->scene->scene, &explanation, far);
+    lr_explanation_free(&explanation);
+    lr_board_log(b, "explained %u,%u %s", x, y, explained ? "well" : "not");
+    if (!explained) {
+        close_explainer(l);
+        say(l, "%s", status ? error.message : "out of memory");
+        return;
+    }
+    lr_board_lock(b);
+    lr_explained_pixel_free(l->news.explained);
+    l->news.explained = explained;
+    lr_board_unlock(b);
+    lr_window_wake();
+}
+
 /* Chooses the next usable device in the order of the list, after the one in use. */
 static void next_device(lr_loader *l)
 {
@@ -318,6 +376,8 @@ static void next_device(lr_loader *l)
         l->jobs.build = true;
     }
     lr_board_unlock(l->board);
+    if (usable > 1)
+        close_explainer(l);
     if (usable > 1)
         say(l, "device %s", devices[next].name);
     else
@@ -351,6 +411,8 @@ static bool work(lr_loader *l)
         next_device(l);
     if (jobs.load)
         load(l);
+    if (jobs.explain)
+        explain(l, jobs.explain_x, jobs.explain_y);
     lr_board_lock(b);
     bool wants_build = jobs.build || l->jobs.build;
     l->jobs.build = false;
@@ -373,7 +435,8 @@ static void wait_for_work(lr_loader *l)
                               {.fd = lr_follow_descriptor(l->follow), .events = POLLIN}};
     const lr_jobs *jobs = &l->jobs;
     lr_board_lock(l->board);
-    bool waiting = jobs->quit || jobs->load || jobs->build || jobs->save || jobs->next_device;
+    bool waiting = jobs->quit || jobs->load || jobs->build || jobs->save || jobs->next_device ||
+                   jobs->explain;
     lr_board_unlock(l->board);
     if (!waiting)
         poll(files, 2, milliseconds(lr_follow_wait(l->follow, lr_now())));
@@ -400,6 +463,8 @@ static void release(lr_loader *l)
     lr_follow_destroy(l->follow);
     lr_shared_scene_give_back(l->scene);
     lr_trees_free(&l->trees);
+    close_explainer(l);
+    lr_explained_pixel_free(l->news.explained);
     free_cameras(&l->news);
     free(l->news.errors);
     if (l->wake >= 0)

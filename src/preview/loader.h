@@ -5,6 +5,7 @@
 #define LR_PREVIEW_LOADER_H
 
 #include "preview/board.h"
+#include "preview/explained.h"
 #include "preview/follow.h"
 
 /* What the loader is asked for; under the board's lock. */
@@ -12,6 +13,8 @@ typedef struct lr_jobs {
     bool quit, load, build, next_device, save;
     uint32_t save_index; /* of the scene's cameras */
     lr_camera save_camera;
+    bool explain;
+    uint32_t explain_x, explain_y;
 } lr_jobs;
 
 /* What the loader has to tell; under the board's lock. */
@@ -25,7 +28,8 @@ typedef struct lr_news {
     uint64_t saved; /* grows with every camera that was saved: number saved_index is now */
     uint32_t saved_index;
     lr_camera saved_camera;
-    uint64_t report;  /* grows with every change of */
+    lr_explained_pixel *explained; /* to be taken by the window; NULL: nothing new */
+    uint64_t report; /* grows with every change of */
     char *errors;     /* what is wrong with the file; NULL: nothing */
     uint64_t message; /* grows with every new */
     char text[1200];
@@ -48,6 +52,7 @@ typedef struct lr_loader {
     lr_shared_scene *scene; /* the latest that is valid */
     char sha256[65];        /* of the text that it was read from, or saved to */
     lr_follow *follow;
+    lr_device *explainer; /* the device that pixels are explained on, once one was */
     lr_trees trees;    /* of the scene's geometry */
     uint32_t failures; /* of devices, one after the other */
 } lr_loader;

@@ -10,6 +10,7 @@
 
 /* In points. */
 #define FONT_SIZE 13.0
+#define FONT_SIZE_SMALL 10.0
 #define FONT_SIZE_MIN 8.0
 #define PADDING 10.0
 #define MARGIN 12.0
@@ -66,7 +67,7 @@ static void rounded(cairo_t *cairo, double x, double y, double width, double hei
 static void draw_panel(cairo_t *cairo, const lr_panel *panel, double scale, double width,
                        double height)
 {
-    double size = FONT_SIZE * scale, edge = (PADDING + MARGIN) * scale;
+    double size = (panel->small ? FONT_SIZE_SMALL : FONT_SIZE) * scale, edge = (PADDING + MARGIN) * scale;
     cairo_font_extents_t font;
     extent text;
     for (;; size -= 1) {

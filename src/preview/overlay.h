@@ -16,6 +16,7 @@ typedef struct lr_panel {
     const char *text; /* UTF-8, lines end in \n; NULL or empty: no panel */
     lr_panel_place place;
     bool error; /* with a red edge */
+    bool small; /* letters */
 } lr_panel;
 
 /* A piece of a ray, in pixels of the picture. */

@@ -33,6 +33,8 @@ void lr_view_wish_picture(lr_view *view)
 {
     view->wish.picture++;
     view->wish_changed = true;
+    /* Rays over the picture move with the camera. */
+    view->overlay_changed = view->overlay_changed || view->explained;
 }
 
 void lr_view_wish_look(lr_view *view)
@@ -48,6 +50,29 @@ void lr_view_build(lr_view *view)
     view->loader.jobs.build = true;
     lr_board_unlock(&view->board);
     lr_loader_wake(&view->loader);
+}
+
+void lr_view_explain(lr_view *view, double x, double y)
+{
+    lr_jobs *jobs = &view->loader.jobs;
+    if (x < 0 || y < 0 || x >= view->wish.width || y >= view->wish.height)
+        return;
+    lr_board_lock(&view->board);
+    jobs->explain = true;
+    jobs->explain_x = (uint32_t)x;
+    jobs->explain_y = (uint32_t)y;
+    lr_board_unlock(&view->board);
+    lr_loader_wake(&view->loader);
+}
+
+void lr_view_forget_explained(lr_view *view)
+{
+    lr_board_lock(&view->board);
+    view->loader.jobs.explain = false;
+    lr_board_unlock(&view->board);
+    lr_explained_pixel_free(view->explained);
+    view->explained = NULL;
+    view->overlay_changed = true;
 }
 
 /* ---- What hands do ------------------------------------------------------------------------ */
@@ -80,9 +105,12 @@ static void on_drag(void *user, lr_button button, bool shift, double dx, double 
 static void on_click(void *user, double x, double y, bool twice)
 {
     lr_view *v = user;
-    (void)x, (void)y;
-    if (twice)
+    if (twice) {
+        lr_view_forget_explained(v);
         lr_view_key(v, 'f');
+    } else {
+        lr_view_explain(v, x, y);
+    }
 }
 
 static void on_wheel(void *user, double x, double y, double steps)
@@ -193,6 +221,13 @@ static void take_news(lr_view *v)
         v->cameras[news->saved_index] = news->saved_camera;
         v->cameras[news->saved_index].name = name;
     }
+    if (news->explained) {
+        lr_explained_pixel_free(v->explained);
+        v->overlay_changed = true;
+        v->explained = news->explained;
+        v->explained_picture = v->wish.picture;
+        news->explained = NULL;
+    }
     if (news->report != v->seen_report) {
         v->seen_report = news->report;
         free(v->errors);
@@ -242,21 +277,47 @@ static void update_title(lr_view *v)
     lr_window_set_title(&v->window, title);
 }
 
+/* The rays of the explained pixel as they are seen from where the camera is now. */
+static lr_overlay_line *project_rays(const lr_view *v, uint32_t *count)
+{
+    *count = 0;
+    if (!v->explained)
+        return NULL;
+    lr_overlay_line *lines = lr_alloc(v->explained->line_count + 1ull, sizeof *lines);
+    for (uint32_t i = 0; lines && i < v->explained->line_count; i++) {
+        const lr_ray_line *ray = &v->explained->lines[i];
+        double e[4];
+        if (lr_camera_project(&v->wish.camera, screen_of(v), ray->from, ray->to, e))
+            lines[(*count)++] =
+                (lr_overlay_line){e[0], e[1], e[2], e[3], ray->color, ray->arrow};
+    }
+    return lines;
+}
+
 static void draw_overlay(lr_view *v)
 {
+    uint32_t line_count;
+    lr_overlay_line *lines = project_rays(v, &line_count);
     char *help = v->help ? lr_view_help() : NULL;
     const char *message = v->message_until > 0 ? v->message
                           : v->busy            ? "making the picture ready ..."
                                                : NULL;
+    /* In words only for the picture that it is about. */
+    bool told = v->explained && v->explained_picture == v->wish.picture && !v->errors;
+    const char *explained = told ? v->explained->text : NULL;
     lr_overlay overlay = {
         .panels = {{.text = message, .place = LR_PANEL_TOP_LEFT},
                    {.text = v->errors, .place = LR_PANEL_BOTTOM_LEFT, .error = true},
+                   {.text = explained, .place = LR_PANEL_BOTTOM_LEFT, .small = true},
                    {.text = help, .place = LR_PANEL_CENTER}},
+        .lines = lines,
+        .line_count = line_count,
         .scale = v->window.scale,
     };
     lr_sheet sheet = {.width = v->wish.width, .height = v->wish.height};
     sheet.pixels = lr_overlay_draw(&overlay, sheet.width, sheet.height);
     free(help);
+    free(lines);
     lr_board_lock(&v->board);
     free(v->board.sheet.pixels);
     v->board.sheet = sheet;
@@ -408,6 +469,7 @@ lr_status lr_preview_run(lr_scene *scene, const lr_file_list *files,
     lr_window_destroy(&v->window);
     free_cameras(v);
     free(v->errors);
+    lr_explained_pixel_free(v->explained);
     free(v);
     return status;
 }

@@ -24,6 +24,8 @@ typedef struct lr_view {
     } file; /* what the scene file says */
     uint64_t seen_scene, seen_saved, seen_report, seen_message;
     char *errors;
+    lr_explained_pixel *explained; /* NULL: none is shown */
+    uint64_t explained_picture;    /* wish.picture that it is a pixel of */
     char message[1200];
     double message_until, last_time;
     bool help, busy, overlay_changed;
@@ -39,6 +41,10 @@ void lr_view_wish_look(lr_view *view);
 
 /* Has other kernels made for what is wished. */
 void lr_view_build(lr_view *view);
+
+/* Has the pixel there explained, and forgets the one that was. */
+void lr_view_explain(lr_view *view, double x, double y);
+void lr_view_forget_explained(lr_view *view);
 
 /* keys.c: what a key does, and the help that names them all; the caller frees it. */
 void lr_view_key(lr_view *view, uint32_t key);

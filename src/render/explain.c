@@ -1,11 +1,12 @@
 /* One pixel rendered by kernels that note every ray. */
-#include "render/explain_internal.h"
+#include "render/explain.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "gpu/commands.h"
+#include "render/explain_internal.h"
 #include "render/film.h"
 #include "render/settings.h"
 #include "render/wavefront.h"
@@ -172,36 +173,44 @@ lr_status lr_explain(lr_device *device, const lr_scene *scene, const lr_render_o
     lr_render_options own = options ? *options : (lr_render_options){0};
     own.crop.width = 0;
     lr_settings settings;
-    lr_packed_scene packed = {0};
     *explanation = (lr_explanation){0};
     lr_status status = lr_settle(scene, &own, &settings, error);
     if (status)
         return status;
-    if (x >= settings.width || y >= settings.height)
+    return lr_explain_picture(device, scene, &settings, &own, x, y, sample, explanation, error);
+}
+
+lr_status lr_explain_picture(lr_device *device, const lr_scene *scene, const lr_settings *settings,
+                             const lr_render_options *options, uint32_t x, uint32_t y,
+                             uint32_t sample, lr_explanation *explanation, lr_error *error)
+{
+    lr_packed_scene packed = {0};
+    *explanation = (lr_explanation){0};
+    if (x >= settings->width || y >= settings->height)
         return lr_fail(error, LR_ERROR_ARGUMENT,
                        "the pixel %u,%u is outside the picture of %ux%u (--size), whose pixels are "
                        "0,0 to %u,%u",
-                       x, y, settings.width, settings.height, settings.width - 1,
-                       settings.height - 1);
-    if (sample >= settings.samples)
+                       x, y, settings->width, settings->height, settings->width - 1,
+                       settings->height - 1);
+    if (sample >= settings->samples)
         return lr_fail(error, LR_ERROR_ARGUMENT,
                        "there is no sample %u: the pixel has %u, and the first is 0 (--spp)",
-                       sample, settings.samples);
+                       sample, settings->samples);
     *explanation = (lr_explanation){
-        .width = settings.width,
-        .height = settings.height,
+        .width = settings->width,
+        .height = settings->height,
         .x = x,
         .y = y,
         .sample = sample,
-        .samples = settings.samples,
-        .depth = settings.depth,
-        .seed = settings.seed,
+        .samples = settings->samples,
+        .depth = settings->depth,
+        .seed = settings->seed,
     };
-    status = lr_pack_scene(scene, &settings, &packed, error);
+    lr_status status = lr_pack_scene(scene, settings, &packed, error);
     if (status)
         return status;
     packed.constants[LR_SPEC_EXPLAIN] = 1;
-    status = explain_packed(device, scene, &packed, &own, explanation, error);
+    status = explain_packed(device, scene, &packed, options, explanation, error);
     if (status)
         lr_explanation_free(explanation);
     lr_packed_scene_free(&packed);
