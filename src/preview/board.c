@@ -43,6 +43,7 @@ void lr_board_log(lr_board *board, const char *format, ...)
 void lr_board_destroy(lr_board *board)
 {
     lr_board_end_session(board, board->next);
+    lr_edit_free(board->edit);
     free(board->sheet.pixels);
     lr_picture_free(&board->taken);
     pthread_cond_destroy(&board->wake);

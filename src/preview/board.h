@@ -49,6 +49,8 @@ typedef struct lr_board {
     bool sheet_new;
     bool screenshot; /* wished for */
     lr_session *next;
+    lr_edit *edit;    /* that the session may take, and is made anew for if not: */
+    bool edit_failed; /* for the loader */
     lr_shown shown;
     lr_picture taken;             /* a screenshot that waits for the loader to write it */
     bool lost;                    /* the renderer has no session any more: the device failed */

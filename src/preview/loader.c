@@ -11,14 +11,13 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "preview/screenshot.h"
 #include "preview/window.h"
 #include "render/explain.h"
 #include "scene/save_camera.h"
 
 /* A device that fails so often without a picture in between is given up. */
 #define FAILURES_MAX 3
-
-#define SCREENSHOTS_MAX 100000
 
 void lr_loader_wake(lr_loader *loader)
 {
@@ -135,6 +134,90 @@ static bool keep_loading(void *user, const char *what, double fraction)
     return !quitting(user);
 }
 
+/* The settings of the picture that is wished for, but for its camera, which is copied to *camera.
+ * Under the board's lock. */
+static lr_settings wished_settings(lr_loader *l, lr_camera *camera)
+{
+    const lr_wish *wish = &l->board->wish;
+    *camera = wish->camera;
+    return (lr_settings){
+        .width = wish->width ? wish->width : 1,
+        .height = wish->height ? wish->height : 1,
+        .samples = wish->samples,
+        .depth = wish->depth,
+        .seed = wish->seed,
+        .camera = camera,
+        .inspect = wish->inspect,
+        .trees = &l->trees,
+    };
+}
+
+/* Makes a session of the scene and hands it to the renderer. */
+static void build(lr_loader *l)
+{
+    lr_board *b = l->board;
+    lr_session *session;
+    lr_error error = {0};
+    lr_board_lock(b);
+    lr_camera camera;
+    lr_settings settings = wished_settings(l, &camera);
+    lr_device_desc device = l->device;
+    lr_board_unlock(b);
+    set_busy(l, true);
+    lr_status status = lr_session_create(l->scene, &device, l->window, &settings, &session, &error);
+    lr_session *unseen = NULL;
+    lr_edit *overtaken = NULL;
+    lr_board_lock(b);
+    bool first = b->shown.picture == 0;
+    if (!status) {
+        unseen = b->next;
+        b->next = session;
+        overtaken = b->edit;
+        b->edit = NULL;
+        b->lost = false;
+        atomic_store(&b->hurry, true);
+        pthread_cond_signal(&b->wake);
+    } else if (first || b->lost) {
+        l->news.fatal = true;
+        l->news.failure = error;
+    }
+    l->news.busy = false;
+    lr_board_unlock(b);
+    lr_board_log(b, "session %s", status ? "failed" : "ready");
+    lr_board_end_session(b, unseen);
+    lr_edit_free(overtaken);
+    if (status)
+        say(l, "%s", error.message);
+    lr_window_wake();
+}
+
+/* Offers a scene that was read again to the session that is shown; whether it could be. */
+static bool offer_edit(lr_loader *l)
+{
+    lr_board *b = l->board;
+    lr_camera camera;
+    lr_board_lock(b);
+    lr_settings settings = wished_settings(l, &camera);
+    bool shown = b->shown.picture > 0 && !b->lost && !b->next;
+    lr_board_unlock(b);
+    lr_edit *edit = shown ? lr_alloc(1, sizeof *edit) : NULL;
+    if (!edit)
+        return false;
+    edit->shared = lr_shared_scene_take(l->scene);
+    if (lr_pack_scene(l->scene->scene, &settings, &edit->packed, NULL)) {
+        lr_edit_free(edit);
+        return false;
+    }
+    lr_board_lock(b);
+    lr_edit *overtaken = b->edit;
+    b->edit = edit;
+    atomic_store(&b->hurry, true);
+    pthread_cond_signal(&b->wake);
+    lr_board_unlock(b);
+    lr_edit_free(overtaken);
+    return true;
+}
+
 /* Reads the scene again. A broken file is told of and changes nothing else. */
 static void load(lr_loader *l)
 {
@@ -168,62 +251,11 @@ static void load(lr_loader *l)
     if (files.count > 0 && !lr_follow_files(l->follow, &files))
         say(l, "out of memory to follow the scene's files");
     lr_file_list_free(&files);
-    lr_board_lock(l->board);
-    l->jobs.build |= !status;
-    lr_board_unlock(l->board);
-}
-
-/* The settings of the picture that is wished for, but for its camera, which is copied to *camera.
- * Under the board's lock. */
-static lr_settings wished_settings(lr_loader *l, lr_camera *camera)
-{
-    const lr_wish *wish = &l->board->wish;
-    *camera = wish->camera;
-    return (lr_settings){
-        .width = wish->width ? wish->width : 1,
-        .height = wish->height ? wish->height : 1,
-        .samples = wish->samples,
-        .depth = wish->depth,
-        .seed = wish->seed,
-        .camera = camera,
-        .inspect = wish->inspect,
-        .trees = &l->trees,
-    };
-}
-
-/* Makes a session of the scene and hands it to the renderer. */
-static void build(lr_loader *l)
-{
-    lr_board *b = l->board;
-    lr_session *session;
-    lr_error error = {0};
-    lr_board_lock(b);
-    lr_camera camera;
-    lr_settings settings = wished_settings(l, &camera);
-    lr_device_desc device = l->device;
-    lr_board_unlock(b);
-    set_busy(l, true);
-    lr_status status = lr_session_create(l->scene, &device, l->window, &settings, &session, &error);
-    lr_session *unseen = NULL;
-    lr_board_lock(b);
-    bool first = b->shown.picture == 0;
-    if (!status) {
-        unseen = b->next;
-        b->next = session;
-        b->lost = false;
-        atomic_store(&b->hurry, true);
-        pthread_cond_signal(&b->wake);
-    } else if (first || b->lost) {
-        l->news.fatal = true;
-        l->news.failure = error;
+    if (!status && !offer_edit(l)) {
+        lr_board_lock(l->board);
+        l->jobs.build = true;
+        lr_board_unlock(l->board);
     }
-    l->news.busy = false;
-    lr_board_unlock(b);
-    lr_board_log(b, "session %s", status ? "failed" : "ready");
-    lr_board_end_session(b, unseen);
-    if (status)
-        say(l, "%s", error.message);
-    lr_window_wake();
 }
 
 /* The renderer's device has failed: a new one may work, unless it fails all the time. */
@@ -243,60 +275,15 @@ static void replace_lost(lr_loader *l)
     lr_window_wake();
 }
 
-/* Creates an empty file of a name that is free. */
-static bool reserve_name(const char *stem, const char *ending, char *name, size_t size)
-{
-    for (int i = 0; i < SCREENSHOTS_MAX; i++) {
-        int length = i == 0 ? snprintf(name, size, "%s%s", stem, ending)
-                            : snprintf(name, size, "%s-%d%s", stem, i, ending);
-        if (length < 0 || (size_t)length >= size)
-            return false;
-        int file = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file >= 0) {
-            close(file);
-            return true;
-        }
-        if (errno != EEXIST)
-            return false;
-    }
-    return false;
-}
-
-/* Writes a screenshot beside where the program runs, or where it was asked to. */
 static void write_screenshot(lr_loader *l, const lr_picture *picture, double exposure)
 {
-    char stem[4000], name[4096];
-    const char *path = l->screenshot ? l->screenshot : l->path;
-    const char *slash = strrchr(path, '/');
-    const char *base = l->screenshot ? path : slash ? slash + 1 : path;
-    const char *dot = strrchr(base, '.');
-    bool has_dot = dot && dot > base && !strchr(dot, '/');
-    lr_encoding encoding = {.format = LR_FORMAT_PNG, .exposure = (float)exposure};
-    const char *ending = ".png";
-    if (l->screenshot && has_dot && lr_format_from_path(path, &encoding.format))
-        ending = dot;
-    snprintf(stem, sizeof stem, "%.*s", (int)(has_dot ? (size_t)(dot - base) : strlen(base)), base);
-    if (!reserve_name(stem, ending, name, sizeof name)) {
-        say(l, "%s%s: %s", stem, ending, strerror(errno));
-        return;
-    }
-    char hash[65];
-    lr_picture_hash(picture, hash);
-    const lr_text texts[] = {
-        {LR_STAMP_SOFTWARE, "lavaray " LR_VERSION},
-        {LR_STAMP_SCENE, l->sha256},
-        {LR_STAMP_PIXELS, hash},
-    };
-    bool carries_texts = encoding.format == LR_FORMAT_PNG || encoding.format == LR_FORMAT_EXR;
-    encoding.texts = carries_texts ? texts : NULL;
-    encoding.text_count = carries_texts ? sizeof texts / sizeof *texts : 0;
+    char name[LR_SCREENSHOT_NAME];
     lr_error error = {0};
-    if (lr_picture_write(picture, name, &encoding, &error)) {
-        unlink(name);
+    const lr_screenshot shot = {l->screenshot, l->path, l->sha256, exposure};
+    if (lr_screenshot_write(&shot, picture, name, &error))
         say(l, "%s", error.message);
-    } else {
+    else
         say(l, "wrote %s", name);
-    }
 }
 
 static void save_camera(lr_loader *l, uint32_t index, const lr_camera *camera)
@@ -396,6 +383,8 @@ static bool work(lr_loader *l)
     lr_picture taken = b->taken;
     double exposure = b->wish.exposure;
     bool lost = b->lost;
+    jobs.build |= b->edit_failed;
+    b->edit_failed = false;
     b->taken = (lr_picture){0};
     if (b->shown.picture > 0 && !lost)
         l->failures = 0;

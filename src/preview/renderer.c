@@ -39,7 +39,7 @@ static bool visible(const lr_renderer *r)
 static bool idle(const lr_renderer *r)
 {
     const lr_board *b = r->board;
-    if (b->quit || b->next || b->sheet_new || b->wish.picture != r->wish.picture ||
+    if (b->quit || b->next || (b->edit && r->session) || b->sheet_new || b->wish.picture != r->wish.picture ||
         b->wish.look != r->wish.look || (b->screenshot && r->session))
         return false;
     return !visible(r) || (r->session->progressive->finished && !r->show);
@@ -47,18 +47,27 @@ static bool idle(const lr_renderer *r)
 
 /* Takes what is new on the board; false when it says to quit. A session that is replaced is left
  * for the caller to destroy. */
-static bool take_news(lr_renderer *r, lr_session **old)
+static bool take_news(lr_renderer *r, lr_session **old, lr_edit **edit)
 {
     lr_board *b = r->board;
     lr_board_lock(b);
     while (idle(r))
         pthread_cond_wait(&b->wake, &b->lock);
     *old = NULL;
+    *edit = NULL;
+    if (b->quit) {
+        lr_board_unlock(b);
+        return false;
+    }
     if (b->next) {
         *old = r->session;
         r->session = b->next;
         r->started = 0;
         b->next = NULL;
+    }
+    if (r->session) {
+        *edit = b->edit;
+        b->edit = NULL;
     }
     r->show = r->show || b->wish.look != r->wish.look || b->sheet_new;
     r->wish = b->wish;
@@ -68,10 +77,9 @@ static bool take_news(lr_renderer *r, lr_session **old)
         b->sheet = (lr_sheet){0};
         b->sheet_new = false;
     }
-    atomic_store(&b->hurry, b->quit);
-    bool quit = b->quit;
+    atomic_store(&b->hurry, false);
     lr_board_unlock(b);
-    return !quit;
+    return true;
 }
 
 /* Lays the sheet over the picture if it was drawn for its size. */
@@ -226,6 +234,24 @@ static lr_status serve(lr_renderer *r, lr_error *error)
     return status;
 }
 
+/* Shows the edited scene, or has a session made for it. */
+static lr_status edit_scene(lr_renderer *r, lr_edit *edit, lr_error *error)
+{
+    bool taken;
+    lr_status status = lr_session_edit(r->session, edit, &taken, error);
+    lr_edit_free(edit);
+    if (taken)
+        r->started = 0;
+    lr_board_log(r->board, "edit %s", taken ? "taken" : "needs a session");
+    if (taken || status)
+        return status;
+    lr_board_lock(r->board);
+    r->board->edit_failed = true;
+    lr_board_unlock(r->board);
+    r->board->notify_loader(r->board->loader);
+    return LR_OK;
+}
+
 /* Without a session there is nothing to do until the loader brings another. */
 static void give_up_session(lr_renderer *r, const lr_error *error)
 {
@@ -242,12 +268,16 @@ static void *run(void *user)
 {
     lr_renderer *r = user;
     lr_session *old;
-    while (take_news(r, &old)) {
+    lr_edit *edit;
+    while (take_news(r, &old, &edit)) {
         if (old)
             lr_session_leave_window(old);
         lr_board_end_session(r->board, old);
         lr_error error = {0};
-        if (visible(r) && serve(r, &error))
+        lr_status status = edit ? edit_scene(r, edit, &error) : LR_OK;
+        if (!status && visible(r))
+            status = serve(r, &error);
+        if (status)
             give_up_session(r, &error);
     }
     lr_board_end_session(r->board, r->session);

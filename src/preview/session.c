@@ -51,6 +51,27 @@ lr_status lr_session_create(lr_shared_scene *shared, const lr_device_desc *desc,
     return status;
 }
 
+void lr_edit_free(lr_edit *edit)
+{
+    if (!edit)
+        return;
+    lr_shared_scene_give_back(edit->shared);
+    lr_packed_scene_free(&edit->packed);
+    free(edit);
+}
+
+lr_status lr_session_edit(lr_session *session, lr_edit *edit, bool *taken, lr_error *error)
+{
+    lr_status status = lr_progressive_replace(session->progressive, edit->shared->scene,
+                                              &edit->packed, taken, error);
+    if (!*taken)
+        return status;
+    lr_shared_scene_give_back(session->shared);
+    session->shared = edit->shared;
+    edit->shared = NULL;
+    return status;
+}
+
 void lr_session_leave_window(lr_session *session)
 {
     lr_swapchain_destroy(session->device, &session->swapchain);

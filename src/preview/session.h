@@ -38,6 +38,18 @@ lr_status lr_session_create(lr_shared_scene *shared, const lr_device_desc *desc,
  * lr_device_validation_messages. */
 uint32_t lr_session_destroy(lr_session *session, char *text, size_t size);
 
+/* A scene ready to take another's place in a session; all of it is owned. */
+typedef struct lr_edit {
+    lr_shared_scene *shared;
+    lr_packed_scene packed;
+} lr_edit;
+
+void lr_edit_free(lr_edit *edit); /* NULL is accepted */
+
+/* Takes the edit's scene if the session's kernels do for it, as they do when only numbers have
+ * changed. *taken tells; the edit is left empty then. */
+lr_status lr_session_edit(lr_session *session, lr_edit *edit, bool *taken, lr_error *error);
+
 /* Gives up the window to another session. */
 void lr_session_leave_window(lr_session *session);
 

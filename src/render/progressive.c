@@ -49,6 +49,21 @@ void lr_progressive_destroy(lr_progressive *progressive)
     free(progressive);
 }
 
+lr_status lr_progressive_replace(lr_progressive *progressive, const lr_scene *scene,
+                                 lr_packed_scene *packed, bool *taken, lr_error *error)
+{
+    lr_progressive *p = progressive;
+    *taken = lr_wavefront_suits(&p->wavefront, packed);
+    if (!*taken)
+        return LR_OK;
+    lr_wavefront_discard(&p->wavefront);
+    lr_packed_scene_free(&p->packed);
+    p->packed = *packed;
+    *packed = (lr_packed_scene){0};
+    p->scene = scene;
+    return lr_wavefront_replace_scene(&p->wavefront, &p->packed, error);
+}
+
 static void begin_sweep(lr_progressive *p, lr_sweep sweep)
 {
     p->sweep = sweep;

@@ -31,6 +31,11 @@ lr_status lr_progressive_create(lr_device *device, const lr_scene *scene,
                                 lr_error *error);
 void lr_progressive_destroy(lr_progressive *progressive);
 
+/* Takes another scene and its packing over, if the kernels and buffers do for it too; otherwise
+ * leaves all as it is, and *taken is false. The picture is to be started anew then. */
+lr_status lr_progressive_replace(lr_progressive *progressive, const lr_scene *scene,
+                                 lr_packed_scene *packed, bool *taken, lr_error *error);
+
 /* Starts a picture anew: with another camera, size, depth, number of samples, or another kind of
  * values to inspect; from light to these, or back, takes another lr_progressive. `camera` of the
  * settings is not looked at later. Must be called once before the first step. */

@@ -71,6 +71,13 @@ typedef struct lr_camera_rays {
     uint32_t first_sample, samples;
 } lr_camera_rays;
 
+/* Whether the kernels and buffers made for one scene do for another as well. */
+bool lr_wavefront_suits(const lr_wavefront *wavefront, const lr_packed_scene *scene);
+
+/* Takes another scene that it suits. */
+lr_status lr_wavefront_replace_scene(lr_wavefront *wavefront, const lr_packed_scene *scene,
+                                     lr_error *error);
+
 /* Gives the film room for so many pixels, whatever the tile size. */
 lr_status lr_wavefront_resize_film(lr_wavefront *wavefront, uint32_t pixels, lr_error *error);
 

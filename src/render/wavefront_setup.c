@@ -292,6 +292,37 @@ static lr_status warm_up(lr_wavefront *w, lr_error *error)
     return lr_commands_finish(w->device, error);
 }
 
+static bool is_texel_buffer(const lr_wavefront *w, const lr_packed_scene *scene)
+{
+    return scene->row_count <= w->device->limits.maxTexelBufferElements;
+}
+
+bool lr_wavefront_suits(const lr_wavefront *w, const lr_packed_scene *scene)
+{
+    static const lr_render_options defaults;
+    lr_wavefront other = {.device = w->device, .scene = scene};
+    plan(&other, &defaults);
+    return !memcmp(w->scene->constants, scene->constants, sizeof scene->constants) &&
+           is_texel_buffer(w, w->scene) && is_texel_buffer(w, scene) &&
+           other.chunk_rays == w->chunk_rays && other.lights_at_once == w->lights_at_once &&
+           other.shadow_room == w->shadow_room && other.rays_at_once == w->rays_at_once;
+}
+
+lr_status lr_wavefront_replace_scene(lr_wavefront *w, const lr_packed_scene *scene, lr_error *error)
+{
+    lr_status status = LR_OK;
+    VkDeviceSize size = 16ull * scene->row_count;
+    w->scene = scene;
+    if (size != w->rows.size) {
+        lr_buffer_destroy(w->device, &w->rows);
+        status =
+            lr_buffer_create(w->device, LR_BUFFER_TEXEL, size, "the scene", &w->rows, error);
+    }
+    if (!status)
+        status = lr_buffer_upload(w->device, &w->rows, scene->rows, size, error);
+    return status;
+}
+
 lr_status lr_wavefront_resize_film(lr_wavefront *w, uint32_t pixels, lr_error *error)
 {
     lr_buffer_destroy(w->device, &w->film);
