@@ -151,7 +151,7 @@ static void test_what_is_ruled_out_is_gone(void **state)
     };
     uint32_t constants[LR_SPEC_COUNT];
     for (int i = 0; i < LR_SPEC_COUNT; i++)
-        constants[i] = 1;
+        constants[i] = i != LR_SPEC_INSPECT; /* which shows no light */
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         constants[LR_SPEC_TREES] = 0;
         lr_spirv with = specialize(parts[i].kernel, constants);
@@ -240,7 +240,6 @@ int main(void)
         cmocka_unit_test(test_each_alone_and_missing),
         cmocka_unit_test(test_random_choices),
         cmocka_unit_test(test_what_is_ruled_out_is_gone),
-        cmocka_unit_test(test_pictures_have_no_notes),
         cmocka_unit_test(test_pictures_have_no_notes),
         cmocka_unit_test(test_defaults),
         cmocka_unit_test(test_truncated),
