@@ -57,6 +57,7 @@ static bool take_news(lr_renderer *r, lr_session **old)
     if (b->next) {
         *old = r->session;
         r->session = b->next;
+        r->proven = false;
         r->started = 0;
         b->next = NULL;
     }
@@ -169,6 +170,7 @@ static lr_status show(lr_renderer *r, lr_error *error)
                      (unsigned long long)r->started, p->sweep.step, lr_progressive_done(p),
                      p->settings.width, p->settings.height, p->finished ? " finished" : "");
         r->show = false;
+        r->proven = r->proven || p->finished;
         r->last_shown = lr_now();
         r->show_seconds = r->last_shown - now;
     } else if (s->progressive->finished) {
@@ -233,6 +235,7 @@ static void give_up_session(lr_renderer *r, const lr_error *error)
     r->session = NULL;
     lr_board_lock(r->board);
     r->board->lost = true;
+    r->board->failures = r->proven ? 1 : r->board->failures + 1;
     r->board->failure = *error;
     lr_board_unlock(r->board);
     r->board->notify_loader(r->board->loader);
