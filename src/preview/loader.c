@@ -397,6 +397,7 @@ static bool work(lr_loader *l)
     double exposure = b->wish.exposure;
     bool lost = b->lost;
     b->taken = (lr_picture){0};
+    pthread_cond_signal(&b->wake); /* there may be another to take */
     lr_board_unlock(b);
     if (taken.pixels)
         write_screenshot(l, &taken, exposure);

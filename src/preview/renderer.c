@@ -40,9 +40,10 @@ static bool idle(const lr_renderer *r)
 {
     const lr_board *b = r->board;
     if (b->quit || b->next || b->sheet_new || b->wish.picture != r->wish.picture ||
-        b->wish.look != r->wish.look || (b->screenshot && r->session))
+        b->wish.look != r->wish.look)
         return false;
-    return !visible(r) || (r->session->progressive->finished && !r->show);
+    bool take = b->screenshot && !b->taken.pixels;
+    return !visible(r) || (!take && r->session->progressive->finished && !r->show);
 }
 
 /* Takes what is new on the board; false when it says to quit. A session that is replaced is left
