@@ -158,7 +158,7 @@ said_more() {
 
 # window_picture FILE.ppm: what the window shows, by the X server.
 window_picture() {
-    xwd -silent -id "$window" >"$work/window.xwd" && xwdtopnm "$work/window.xwd" >"$1" 2>/dev/null
+    xwd -silent -id "$window" >"$work/window.xwd" 2>/dev/null && xwdtopnm "$work/window.xwd" >"$1" 2>/dev/null
 }
 
 shows() {
