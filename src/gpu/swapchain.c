@@ -244,7 +244,8 @@ void lr_swapchain_copy(lr_device *device, const lr_swapchain *s, const lr_buffer
                   VK_ACCESS_TRANSFER_WRITE_BIT, 0);
 }
 
-lr_status lr_swapchain_present(lr_device *device, lr_swapchain *s, uint32_t image, lr_error *error)
+lr_status lr_swapchain_present(lr_device *device, lr_swapchain *s, uint32_t image, bool *shown,
+                               lr_error *error)
 {
     VkPresentInfoKHR desc = {
         .sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR,
@@ -253,6 +254,7 @@ lr_status lr_swapchain_present(lr_device *device, lr_swapchain *s, uint32_t imag
         .pImageIndices = &image,
     };
     VkResult result = device->vk.vkQueuePresentKHR(device->queue, &desc);
+    *shown = result >= 0;
     note(device, s, result);
     if (result < 0 && !is_stale(result))
         return lr_vk_fail(error, "vkQueuePresentKHR", result);

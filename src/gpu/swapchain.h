@@ -36,8 +36,9 @@ lr_status lr_swapchain_acquire(lr_device *device, lr_swapchain *swapchain, uint3
 void lr_swapchain_copy(lr_device *device, const lr_swapchain *swapchain, const lr_buffer *pixels,
                        uint32_t image);
 
-/* Shows the image after lr_commands_finish. */
+/* Shows the image after lr_commands_finish. *shown is false when the swapchain has become stale
+ * before that. */
 lr_status lr_swapchain_present(lr_device *device, lr_swapchain *swapchain, uint32_t image,
-                               lr_error *error);
+                               bool *shown, lr_error *error);
 
 #endif

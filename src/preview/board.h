@@ -54,6 +54,7 @@ typedef struct lr_board {
     lr_shown shown;
     lr_picture taken;             /* a screenshot that waits for the loader to write it */
     bool lost;                    /* the renderer has no session any more: the device failed */
+    uint32_t failures;            /* so many one after the other, without a whole picture */
     lr_error failure;             /* why */
     FILE *events;                 /* a log for tests, or NULL; see lr_board_log */
     double start;                 /* of its clock */

@@ -16,7 +16,7 @@
 #include "render/explain.h"
 #include "scene/save_camera.h"
 
-/* A device that fails so often without a picture in between is given up. */
+/* A device that fails so often without a whole picture in between is given up. */
 #define FAILURES_MAX 3
 
 void lr_loader_wake(lr_loader *loader)
@@ -264,7 +264,7 @@ static void replace_lost(lr_loader *l)
     lr_board *b = l->board;
     lr_board_lock(b);
     lr_error failure = b->failure;
-    bool again = ++l->failures < FAILURES_MAX;
+    bool again = b->failures < FAILURES_MAX;
     if (!again) {
         l->news.fatal = true;
         l->news.failure = failure;
@@ -386,8 +386,7 @@ static bool work(lr_loader *l)
     jobs.build |= b->edit_failed;
     b->edit_failed = false;
     b->taken = (lr_picture){0};
-    if (b->shown.picture > 0 && !lost)
-        l->failures = 0;
+    pthread_cond_signal(&b->wake); /* there may be another to take */
     lr_board_unlock(b);
     if (taken.pixels)
         write_screenshot(l, &taken, exposure);

@@ -29,9 +29,9 @@ typedef struct lr_news {
     uint32_t saved_index;
     lr_camera saved_camera;
     lr_explained_pixel *explained; /* to be taken by the window; NULL: nothing new */
-    uint64_t report; /* grows with every change of */
-    char *errors;     /* what is wrong with the file; NULL: nothing */
-    uint64_t message; /* grows with every new */
+    uint64_t report;               /* grows with every change of */
+    char *errors;                  /* what is wrong with the file; NULL: nothing */
+    uint64_t message;              /* grows with every new */
     char text[1200];
     bool busy;  /* another scene or device is being made ready */
     bool fatal; /* there is no way to go on: `failure` tells why */
@@ -53,8 +53,7 @@ typedef struct lr_loader {
     char sha256[65];        /* of the text that it was read from, or saved to */
     lr_follow *follow;
     lr_device *explainer; /* the device that pixels are explained on, once one was */
-    lr_trees trees;    /* of the scene's geometry */
-    uint32_t failures; /* of devices, one after the other */
+    lr_trees trees;       /* of the scene's geometry */
 } lr_loader;
 
 /* Begins with a scene that is loaded already, and takes it over; `files` are its. Also reads it

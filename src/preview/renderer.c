@@ -39,10 +39,12 @@ static bool visible(const lr_renderer *r)
 static bool idle(const lr_renderer *r)
 {
     const lr_board *b = r->board;
-    if (b->quit || b->next || (b->edit && r->session) || b->sheet_new || b->wish.picture != r->wish.picture ||
-        b->wish.look != r->wish.look || (b->screenshot && r->session))
+    bool edit = b->edit && r->session;
+    if (b->quit || b->next || edit || b->sheet_new || b->wish.picture != r->wish.picture ||
+        b->wish.look != r->wish.look)
         return false;
-    return !visible(r) || (r->session->progressive->finished && !r->show);
+    bool take = b->screenshot && !b->taken.pixels;
+    return !visible(r) || (!take && r->session->progressive->finished && !r->show);
 }
 
 /* Takes what is new on the board; false when it says to quit. A session that is replaced is left
@@ -62,6 +64,7 @@ static bool take_news(lr_renderer *r, lr_session **old, lr_edit **edit)
     if (b->next) {
         *old = r->session;
         r->session = b->next;
+        r->proven = false;
         r->started = 0;
         b->next = NULL;
     }
@@ -177,6 +180,7 @@ static lr_status show(lr_renderer *r, lr_error *error)
                      (unsigned long long)r->started, p->sweep.step, lr_progressive_done(p),
                      p->settings.width, p->settings.height, p->finished ? " finished" : "");
         r->show = false;
+        r->proven = r->proven || p->finished;
         r->last_shown = lr_now();
         r->show_seconds = r->last_shown - now;
     } else if (s->progressive->finished) {
@@ -259,6 +263,7 @@ static void give_up_session(lr_renderer *r, const lr_error *error)
     r->session = NULL;
     lr_board_lock(r->board);
     r->board->lost = true;
+    r->board->failures = r->proven ? 1 : r->board->failures + 1;
     r->board->failure = *error;
     lr_board_unlock(r->board);
     r->board->notify_loader(r->board->loader);

@@ -17,6 +17,7 @@ typedef struct lr_renderer {
     double show_seconds;     /* that showing it takes */
     bool told_done;          /* the window knows that the picture is finished */
     bool show;               /* there is something new to show */
+    bool proven;             /* the session has shown a whole picture */
 } lr_renderer;
 
 lr_status lr_renderer_start(lr_renderer *renderer, lr_board *board, lr_error *error);

@@ -117,7 +117,6 @@ lr_status lr_session_show(lr_session *session, const lr_look *look, bool *shown,
     lr_swapchain_copy(device, &s->swapchain, &s->display.canvas, image);
     status = lr_commands_finish(device, error);
     if (!status)
-        status = lr_swapchain_present(device, &s->swapchain, image, error);
-    *shown = !status;
+        status = lr_swapchain_present(device, &s->swapchain, image, shown, error);
     return status;
 }

@@ -1,14 +1,18 @@
-/* A Vulkan loader that passes everything on to the real one, except that chosen calls fail.
+/* A Vulkan loader that passes everything on to the real one, except that chosen calls fail. Of any
+ * number of threads; of one driver.
  *
  * LAVARAY_REAL_VULKAN  path of the real loader
  * LAVARAY_FAULT        "vkAllocateMemory:3:-2": the third call returns VkResult -2, without being
- *                      passed on; "vkQueueSubmit:2+:-4": so do all from the second on
+ *                      passed on; "vkQueueSubmit:2+:-4": so do all from the second on;
+ *                      "vkQueuePresentKHR:3/:-4": each third. VK_SUBOPTIMAL_KHR is what a call
+ *                      returns that is passed on and succeeds
  * LAVARAY_FAULT_LOG    a file that gets "NAME COUNT" for each wrapped function that was called, and
  *                      "NAME unwrapped" for each function that was asked for but is not wrapped
  *
  * Loaded under the name libvulkan.so.1, so it must not have symbols of that library beyond
  * vkGetInstanceProcAddr. */
 #include <dlfcn.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -18,8 +22,13 @@
 #define VK_NO_PROTOTYPES
 #include <vulkan/vulkan.h>
 
+/* vulkan_xcb.h without the headers of XCB. */
+typedef VkResult(VKAPI_PTR *PFN_vkCreateXcbSurfaceKHR)(VkInstance, const void *,
+                                                       const VkAllocationCallbacks *,
+                                                       VkSurfaceKHR *);
+
 /* Name, parameters, arguments: all functions that return a VkResult and that a compute program may
- * call. */
+ * call, or one that shows pictures in a window. */
 #define WRAPPED(X)                                                                                 \
     X(vkCreateInstance,                                                                            \
       (const VkInstanceCreateInfo *a, const VkAllocationCallbacks *b, VkInstance *c), (a, b, c))   \
@@ -106,7 +115,28 @@
     X(vkGetFenceStatus, (VkDevice a, VkFence b), (a, b))                                           \
     X(vkWaitForFences, (VkDevice a, uint32_t b, const VkFence *c, VkBool32 d, uint64_t e),         \
       (a, b, c, d, e))                                                                             \
-    X(vkQueueSubmit, (VkQueue a, uint32_t b, const VkSubmitInfo *c, VkFence d), (a, b, c, d))
+    X(vkQueueSubmit, (VkQueue a, uint32_t b, const VkSubmitInfo *c, VkFence d), (a, b, c, d))      \
+    X(vkCreateXcbSurfaceKHR,                                                                       \
+      (VkInstance a, const void *b, const VkAllocationCallbacks *c, VkSurfaceKHR *d),              \
+      (a, b, c, d))                                                                                \
+    X(vkGetPhysicalDeviceSurfaceSupportKHR,                                                        \
+      (VkPhysicalDevice a, uint32_t b, VkSurfaceKHR c, VkBool32 * d), (a, b, c, d))                \
+    X(vkGetPhysicalDeviceSurfaceCapabilitiesKHR,                                                   \
+      (VkPhysicalDevice a, VkSurfaceKHR b, VkSurfaceCapabilitiesKHR * c), (a, b, c))               \
+    X(vkGetPhysicalDeviceSurfaceFormatsKHR,                                                        \
+      (VkPhysicalDevice a, VkSurfaceKHR b, uint32_t * c, VkSurfaceFormatKHR * d), (a, b, c, d))    \
+    X(vkGetPhysicalDeviceSurfacePresentModesKHR,                                                   \
+      (VkPhysicalDevice a, VkSurfaceKHR b, uint32_t * c, VkPresentModeKHR * d), (a, b, c, d))      \
+    X(vkCreateSwapchainKHR,                                                                        \
+      (VkDevice a, const VkSwapchainCreateInfoKHR *b, const VkAllocationCallbacks *c,              \
+       VkSwapchainKHR *d),                                                                         \
+      (a, b, c, d))                                                                                \
+    X(vkGetSwapchainImagesKHR, (VkDevice a, VkSwapchainKHR b, uint32_t * c, VkImage * d),          \
+      (a, b, c, d))                                                                                \
+    X(vkAcquireNextImageKHR,                                                                       \
+      (VkDevice a, VkSwapchainKHR b, uint64_t c, VkSemaphore d, VkFence e, uint32_t * f),          \
+      (a, b, c, d, e, f))                                                                          \
+    X(vkQueuePresentKHR, (VkQueue a, const VkPresentInfoKHR *b), (a, b))
 
 #define X(name, parameters, arguments) INDEX_##name,
 typedef enum wrapped_index { WRAPPED(X) WRAPPED_COUNT } wrapped_index;
@@ -117,35 +147,36 @@ static const char *const names[WRAPPED_COUNT] = {WRAPPED(X)};
 #undef X
 
 static PFN_vkVoidFunction real_functions[WRAPPED_COUNT];
-static unsigned calls[WRAPPED_COUNT];
+static atomic_uint calls[WRAPPED_COUNT];
 static PFN_vkGetInstanceProcAddr real_instance;
 static PFN_vkGetDeviceProcAddr real_device;
 static FILE *log_file;
 
-/* Whether this call is one that must fail; *result is then what it returns. */
-static bool fails(wrapped_index index, VkResult *result)
+/* What this call is to return; VK_SUCCESS: whatever it does. */
+static VkResult fault_of(wrapped_index index)
 {
-    unsigned call = ++calls[index];
+    unsigned call = atomic_fetch_add(&calls[index], 1) + 1;
     const char *fault = getenv("LAVARAY_FAULT");
     size_t length = strlen(names[index]);
     if (!fault || strncmp(fault, names[index], length) != 0 || fault[length] != ':') {
-        return false;
+        return VK_SUCCESS;
     }
     char *end;
-    unsigned long first = strtoul(fault + length + 1, &end, 10);
-    bool all_later = *end == '+';
-    *result = (VkResult)strtol(end + all_later + 1, NULL, 10);
-    return call == first || (all_later && call > first);
+    unsigned long number = strtoul(fault + length + 1, &end, 10);
+    char which = *end;
+    bool fails = which == '+' ? call >= number : which == '/' ? call % number == 0 : call == number;
+    return fails ? (VkResult)strtol(end + (which != ':') + 1, NULL, 10) : VK_SUCCESS;
 }
 
 #define X(name, parameters, arguments)                                                             \
     static VKAPI_ATTR VkResult VKAPI_CALL shim_##name parameters                                   \
     {                                                                                              \
-        VkResult result;                                                                           \
-        if (fails(INDEX_##name, &result)) {                                                        \
-            return result;                                                                         \
+        VkResult fault = fault_of(INDEX_##name);                                                   \
+        if (fault != VK_SUCCESS && fault != VK_SUBOPTIMAL_KHR) {                                   \
+            return fault;                                                                          \
         }                                                                                          \
-        return ((PFN_##name)real_functions[INDEX_##name])arguments;                                \
+        VkResult real = ((PFN_##name)real_functions[INDEX_##name])arguments;                       \
+        return real == VK_SUCCESS ? fault : real;                                                  \
     }
 WRAPPED(X)
 #undef X

@@ -53,7 +53,8 @@ events=$work/events
 VIEW_ENV=()
 launch() {
     : >"$events"
-    env "${VIEW_ENV[@]}" "$LAVARAY" view "$@" --events "$events" >"$work/said" 2>"$work/err" &
+    # What a shell starts in the background would not be reached by SIGINT.
+    env --default-signal=INT "${VIEW_ENV[@]}" "$LAVARAY" view "$@" --events "$events" >"$work/said" 2>"$work/err" &
     view_process=$!
 }
 
@@ -157,7 +158,7 @@ said_more() {
 
 # window_picture FILE.ppm: what the window shows, by the X server.
 window_picture() {
-    xwd -silent -id "$window" >"$work/window.xwd" && xwdtopnm "$work/window.xwd" >"$1" 2>/dev/null
+    xwd -silent -id "$window" >"$work/window.xwd" 2>/dev/null && xwdtopnm "$work/window.xwd" >"$1" 2>/dev/null
 }
 
 shows() {
@@ -175,6 +176,10 @@ differs_file() {
 # sized WxH: the size of the window.
 sized() {
     [ "$(xdotool getwindowgeometry "$window" | sed -n 's/.*Geometry: //p')" = "$1" ]
+}
+
+hidden() {
+    xprop -id "$window" WM_STATE | grep -q Iconic
 }
 
 # shows_soon FILE.ppm NAME: the window comes to show that picture; what it shows is kept as NAME.png.
