@@ -13,9 +13,14 @@ expect 0 "$LAVARAY" render -q "$scene" --size 120x90 -o "$work/want.ppm"
 "$LAVARAY" render -q "$scene" --size 90x70 -o "$work/want-small.ppm"
 shimmed=(LD_LIBRARY_PATH="$shim" LAVARAY_REAL_VULKAN="$real")
 
-# All that the window does: shows, moves its camera and comes back, is resized, reads its scene again.
+# All that the window does: shows, is resized, reads its scene again, and makes other kernels ready and
+# those for light again.
 shows_or_ends() {
     shows "$1" || ! running
+}
+
+more_or_ends() {
+    more "$@" || ! running
 }
 
 act() {
@@ -24,9 +29,16 @@ act() {
     await 20 shows_or_ends "$work/want-small.ppm" && running || return
     xdotool windowsize "$window" 120 90
     local before
-    before=$(count ' session ')
+    before=$(count ' scene ')
     cp scenes/shapes.yaml "$scene"
-    await 20 more ' session ' "$before"
+    await 20 more_or_ends ' scene ' "$before" && running || return
+    before=$(count ' session ')
+    press v
+    await 20 more_or_ends ' session ' "$before" && running || return
+    before=$(count ' session ')
+    press v v v v
+    await 20 more_or_ends ' session ' "$before" && running || return
+    press Escape
     await 20 shows_or_ends "$work/want.ppm" && running || return
     ! running || press q
 }

@@ -37,7 +37,7 @@ shows_soon "$work/want.ppm" sizes-after-one
 for i in 1 2 3; do
     xdotool windowminimize "$window"
     await 20 hidden
-    cp scenes/showcase.yaml "$scene" # which makes another session
+    cp scenes/showcase.yaml "$scene" # which is read again
     xdotool windowmap "$window" windowactivate "$window"
     await 20 has_focus
     shows_soon "$work/want.ppm" sizes-restored
