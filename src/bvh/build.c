@@ -169,7 +169,7 @@ static void scatter_chunk(void *context, uint32_t part)
     bounds sides[2] = {bounds_empty(), bounds_empty()};
     for (uint32_t i = 0; i < c->count; i++) {
         bool right = split_side(&node->split, &from[i]);
-        sides[right] = bounds_add(sides[right], reference_centroid(&from[i]));
+        bounds_add_to(sides, reference_centroid(&from[i]), right);
         to[at[right]++] = from[i];
     }
     c->left = sides[0];

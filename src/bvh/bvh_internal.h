@@ -85,6 +85,19 @@ static inline bounds bounds_add(bounds b, lanes point)
     return (bounds){lanes_min(b.lo, point), lanes_max(b.hi, point)};
 }
 
+/* Adds a point to sides[right]. By selects: memory chosen by `right` would be waited for. */
+static inline void bounds_add_to(bounds sides[2], lanes point, bool right)
+{
+    const bounds none = bounds_empty();
+    const int32_t bits = -(int32_t)right;
+    const int_lanes p = (int_lanes)point, is_right = {bits, bits, bits, bits};
+    const int_lanes lo = (int_lanes)none.lo, hi = (int_lanes)none.hi;
+    sides[0].lo = lanes_min(sides[0].lo, (lanes)((p & ~is_right) | (lo & is_right)));
+    sides[0].hi = lanes_max(sides[0].hi, (lanes)((p & ~is_right) | (hi & is_right)));
+    sides[1].lo = lanes_min(sides[1].lo, (lanes)((p & is_right) | (lo & ~is_right)));
+    sides[1].hi = lanes_max(sides[1].hi, (lanes)((p & is_right) | (hi & ~is_right)));
+}
+
 /* Half the surface. */
 static inline float bounds_area(bounds b)
 {

@@ -1,6 +1,10 @@
 /* Where to cut: centroids in bins, and the plane between bins that the heuristic likes best. */
 #include "bvh/bvh_internal.h"
 
+/* From so many references on, neighbours go into bins of their own, as those in the same one would
+ * wait for each other. */
+#define PAIRED 128
+
 void bvh_bins_place(const bounds *centroids, split *s)
 {
     lanes extent = centroids->hi - centroids->lo;
@@ -20,16 +24,29 @@ void bvh_bins_clear(bins *b)
     }
 }
 
+static inline void add_reference(bins *b, const split *s, const reference *r)
+{
+    int_lanes bin = bin_of(reference_centroid(r), s->base, s->scale);
+    for (int axis = 0; axis < 3; axis++) {
+        b->box[axis][bin[axis]] = bounds_union(b->box[axis][bin[axis]], r->box);
+        b->count[axis][bin[axis]]++;
+    }
+}
+
 void bvh_bins_add(bins *b, const split *s, const reference *references, uint32_t count)
 {
-    for (uint32_t i = 0; i < count; i++) {
-        bounds box = references[i].box;
-        int_lanes bin = bin_of(reference_centroid(&references[i]), s->base, s->scale);
-        for (int axis = 0; axis < 3; axis++) {
-            b->box[axis][bin[axis]] = bounds_union(b->box[axis][bin[axis]], box);
-            b->count[axis][bin[axis]]++;
+    uint32_t done = 0;
+    if (count >= PAIRED) {
+        bins others;
+        bvh_bins_clear(&others);
+        for (; done + 1 < count; done += 2) {
+            add_reference(b, s, &references[done]);
+            add_reference(&others, s, &references[done + 1]);
         }
+        bvh_bins_merge(b, &others);
     }
+    for (; done < count; done++)
+        add_reference(b, s, &references[done]);
 }
 
 void bvh_bins_merge(bins *b, const bins *other)

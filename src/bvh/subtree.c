@@ -194,7 +194,7 @@ static void partition(reference *references, uint32_t count, const split *s, ran
     for (uint32_t i = 0; i < count; i++) {
         const reference r = references[i];
         bool is_right = split_side(s, &r);
-        sides[is_right] = bounds_add(sides[is_right], reference_centroid(&r));
+        bounds_add_to(sides, reference_centroid(&r), is_right);
         references[i] = *end;
         *end = r;
         end += !is_right;

@@ -20,6 +20,23 @@ static bool report_bad_byte(lr_report *report, size_t offset)
     return false;
 }
 
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t';
+}
+
+/* Whether a tab stands between the colon at `offset` and what may begin a block on the same line.
+ */
+static bool tab_before_block(const lr_report *report, size_t offset)
+{
+    const char *text = report->text;
+    size_t end = offset + 1;
+    bool tab = false;
+    for (; end < report->length && is_blank(text[end]); end++)
+        tab = tab || text[end] == '\t';
+    return tab && end < report->length && text[end] && strchr("-?:>|", text[end]);
+}
+
 /* Sizes first: nothing below is worth its time for a text that is refused anyway. */
 bool lr_text_check(lr_report *report)
 {
@@ -31,6 +48,7 @@ bool lr_text_check(lr_report *report)
     }
     const char *text = report->text;
     size_t flow = 0;
+    bool explicit_keys = false;
     for (size_t i = 0; i < report->length;) {
         size_t size = lr_utf8_length(text + i, report->length - i);
         unsigned char c = (unsigned char)text[i];
@@ -38,6 +56,13 @@ bool lr_text_check(lr_report *report)
             return report_bad_byte(report, i);
         if (c == '\n')
             flow = 0;
+        /* After a key that follows a question mark, such a tab makes libfyaml free memory twice. */
+        if (c == '?' && i + 1 < report->length && isspace((unsigned char)text[i + 1]))
+            explicit_keys = true;
+        if (explicit_keys && c == ':' && tab_before_block(report, i)) {
+            lr_report_add(report, i + 1, "a tab after this colon, expected spaces");
+            return false;
+        }
         /* A flow collection may turn out to be a key until its line ends, so libfyaml keeps all of
          * the line's tokens, at some 400 bytes each. */
         if ((c == ',' || c == '[' || c == '{') && ++flow > LR_FLOW_LINE_MAX) {

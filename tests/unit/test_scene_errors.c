@@ -241,6 +241,8 @@ static void test_traps(void **state)
         {"camera: {}\nobjects:\n  sphere: {}\n",
          "3:3: objects is a mapping, expected a list: begin each object with a dash"},
         {ONE "- sphere:\n\tradius: 1\n", "4:1: a tab indents this line, expected spaces"},
+        {"? camera:\t- b\n", "1:10: a tab after this colon, expected spaces"},
+        {"a: 1\n?\n  b : \t>\n", "3:6: a tab after this colon, expected spaces"},
         {ONE "- sphere: {radius: 1\n- plane: {}\n", "3:11: this { is not closed, expected a }"},
         {ONE "- sphere: {center: [1, 2}\n", "3:20: this [ is not closed, expected a ]"},
         {"camera: {}: {}\nobjects: []\n", "1:1"},
