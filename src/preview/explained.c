@@ -121,8 +121,8 @@ static void add_line(lr_explained_pixel *p, lr_vec3 from, lr_vec3 to, uint32_t c
     p->lines[p->line_count++] = (lr_ray_line){from, to, color, arrow};
 }
 
-static void add_light(lr_explained_pixel *p, const lr_explanation *x, const lr_explained_light *light,
-                      double far)
+static void add_light(lr_explained_pixel *p, const lr_explanation *x,
+                      const lr_explained_light *light, double far)
 {
     if (!light->tested)
         return;

@@ -222,13 +222,14 @@ void lr_view_key(lr_view *view, uint32_t key)
 
 char *lr_view_help(void)
 {
-    static const char hands[] = "drag            orbit\n"
-                                "wheel           nearer, farther\n"
-                                "middle drag     move sideways (also Shift and drag)\n"
-                                "right drag      look around, with W A S D Q E fly\n"
-                                "click           explain that pixel; its rays stay when the camera moves\n"
-                                "double click    focus on that place\n"
-                                "1 ... 9         the scene's cameras\n";
+    static const char hands[] =
+        "drag            orbit\n"
+        "wheel           nearer, farther\n"
+        "middle drag     move sideways (also Shift and drag)\n"
+        "right drag      look around, with W A S D Q E fly\n"
+        "click           explain that pixel; its rays stay when the camera moves\n"
+        "double click    focus on that place\n"
+        "1 ... 9         the scene's cameras\n";
     char *text = NULL;
     size_t size;
     FILE *out = open_memstream(&text, &size);

@@ -423,8 +423,8 @@ static void wait_for_work(lr_loader *l)
                               {.fd = lr_follow_descriptor(l->follow), .events = POLLIN}};
     const lr_jobs *jobs = &l->jobs;
     lr_board_lock(l->board);
-    bool waiting = jobs->quit || jobs->load || jobs->build || jobs->save || jobs->next_device ||
-                   jobs->explain;
+    bool waiting =
+        jobs->quit || jobs->load || jobs->build || jobs->save || jobs->next_device || jobs->explain;
     lr_board_unlock(l->board);
     if (!waiting)
         poll(files, 2, milliseconds(lr_follow_wait(l->follow, lr_now())));

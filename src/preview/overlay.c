@@ -67,7 +67,8 @@ static void rounded(cairo_t *cairo, double x, double y, double width, double hei
 static void draw_panel(cairo_t *cairo, const lr_panel *panel, double scale, double width,
                        double height)
 {
-    double size = (panel->small ? FONT_SIZE_SMALL : FONT_SIZE) * scale, edge = (PADDING + MARGIN) * scale;
+    double size = (panel->small ? FONT_SIZE_SMALL : FONT_SIZE) * scale,
+           edge = (PADDING + MARGIN) * scale;
     cairo_font_extents_t font;
     extent text;
     for (;; size -= 1) {

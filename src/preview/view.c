@@ -288,8 +288,7 @@ static lr_overlay_line *project_rays(const lr_view *v, uint32_t *count)
         const lr_ray_line *ray = &v->explained->lines[i];
         double e[4];
         if (lr_camera_project(&v->wish.camera, screen_of(v), ray->from, ray->to, e))
-            lines[(*count)++] =
-                (lr_overlay_line){e[0], e[1], e[2], e[3], ray->color, ray->arrow};
+            lines[(*count)++] = (lr_overlay_line){e[0], e[1], e[2], e[3], ray->color, ray->arrow};
     }
     return lines;
 }

@@ -14,7 +14,7 @@ typedef enum lr_inspect {
     LR_INSPECT_NORMAL = LR_GPU_INSPECT_NORMAL, /* that light falls by: (n + 1) / 2 */
     LR_INSPECT_DEPTH = LR_GPU_INSPECT_DEPTH,   /* from 1 at the eye, 1/2 at the focus, to 0 */
     LR_INSPECT_OBJECT = LR_GPU_INSPECT_OBJECT, /* a colour for each */
-    LR_INSPECT_RAYS = LR_GPU_INSPECT_RAYS,    /* rays, 1/64 each */
+    LR_INSPECT_RAYS = LR_GPU_INSPECT_RAYS,     /* rays, 1/64 each */
 } lr_inspect;
 
 /* What a render is asked for, with the scene's own values where the caller left them open. */

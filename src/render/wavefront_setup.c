@@ -315,8 +315,7 @@ lr_status lr_wavefront_replace_scene(lr_wavefront *w, const lr_packed_scene *sce
     w->scene = scene;
     if (size != w->rows.size) {
         lr_buffer_destroy(w->device, &w->rows);
-        status =
-            lr_buffer_create(w->device, LR_BUFFER_TEXEL, size, "the scene", &w->rows, error);
+        status = lr_buffer_create(w->device, LR_BUFFER_TEXEL, size, "the scene", &w->rows, error);
     }
     if (!status)
         status = lr_buffer_upload(w->device, &w->rows, scene->rows, size, error);

@@ -72,6 +72,36 @@ static void test_points(void **state)
     }
 }
 
+static void test_lines(void **state)
+{
+    (void)state;
+    const lr_vec3 a = {-0.7, 1.9, 0.4}, b = {1.2, 0.3, -3};
+    double ends[4], x, y;
+    for (int i = 0; i < 2; i++) {
+        const lr_camera *camera = i ? &slanted : &usual;
+        assert_true(lr_camera_project(camera, screen, a, b, ends));
+        project(camera, a, &x, &y);
+        assert_near(ends[0], x, 1e-7);
+        assert_near(ends[1], y, 1e-7);
+        project(camera, b, &x, &y);
+        assert_near(ends[2], x, 1e-7);
+        assert_near(ends[3], y, 1e-7);
+        /* From the point to one behind the eye: it ends on the way there, a thousandth ahead. */
+        lr_vec3 eye = camera->from, view = lr_vec3_sub(camera->to, eye);
+        lr_vec3 behind = lr_vec3_sub(lr_vec3_sub(eye, view), lr_vec3_scale(camera->up, 1e-4));
+        assert_true(lr_camera_project(camera, screen, b, behind, ends));
+        lr_vec3 forward = view_of(camera);
+        double from = lr_vec3_dot(lr_vec3_sub(b, eye), forward);
+        double to = lr_vec3_dot(lr_vec3_sub(behind, eye), forward);
+        double share = (from - 1e-3 * lr_vec3_length(view)) / (from - to);
+        lr_vec3 cut = lr_vec3_add(b, lr_vec3_scale(lr_vec3_sub(behind, b), share));
+        project(camera, cut, &x, &y);
+        assert_near(ends[2], x, 1e-5 * (1 + fabs(x)));
+        assert_near(ends[3], y, 1e-5 * (1 + fabs(y)));
+        assert_false(lr_camera_project(camera, screen, behind, lr_vec3_sub(behind, view), ends));
+    }
+}
+
 static void test_orbit(void **state)
 {
     (void)state;
@@ -241,9 +271,10 @@ static void test_limits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_points), cmocka_unit_test(test_orbit), cmocka_unit_test(test_poles),
-        cmocka_unit_test(test_pan),    cmocka_unit_test(test_zoom),  cmocka_unit_test(test_flight),
-        cmocka_unit_test(test_focus),  cmocka_unit_test(test_fov),   cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_points), cmocka_unit_test(test_lines), cmocka_unit_test(test_orbit),
+        cmocka_unit_test(test_poles),  cmocka_unit_test(test_pan),   cmocka_unit_test(test_zoom),
+        cmocka_unit_test(test_flight), cmocka_unit_test(test_focus), cmocka_unit_test(test_fov),
+        cmocka_unit_test(test_limits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
