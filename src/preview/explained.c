@@ -166,6 +166,15 @@ lr_explained_pixel *lr_explained_pixel_create(const lr_scene *scene, const lr_ex
         lr_explained_pixel_free(p);
         return NULL;
     }
+    /* Surfaces that are not there for the ray are passed. */
+    for (uint32_t i = 0; i < pixel->ray_count && !p->meets; i++) {
+        const lr_explained_ray *ray = &pixel->rays[i];
+        bool first = ray->kind == LR_RAY_CAMERA || ray->kind == LR_RAY_ONWARD;
+        p->meets = first && ray->object != LR_NO_INDEX && !ray->hidden && !ray->hole;
+        p->met = vec3(ray->position);
+        if (!first)
+            break;
+    }
     for (uint32_t i = 0; i < pixel->ray_count; i++)
         add_ray(p, pixel, i, far);
     return p;

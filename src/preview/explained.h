@@ -15,6 +15,8 @@ typedef struct lr_explained_pixel {
     char *text;
     lr_ray_line *lines;
     uint32_t line_count;
+    bool meets; /* its camera ray meets something, */
+    lr_vec3 met; /* here */
 } lr_explained_pixel;
 
 /* Rays that see nothing, and those to lights that are nowhere, end after `far` metres. NULL when

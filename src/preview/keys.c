@@ -49,17 +49,12 @@ static void reset(lr_view *v)
 
 static void focus(lr_view *v)
 {
-    lr_screen screen = {v->wish.width, v->wish.height};
-    if (screen.width == 0 || screen.height == 0)
-        return;
-    lr_vec3 point = lr_camera_point(&v->wish.camera, screen, v->window.x, v->window.y);
-    v->wish.camera = lr_camera_focus(v->wish.camera, point);
-    lr_view_wish_picture(v);
+    lr_view_explain(v, v->window.x, v->window.y, true);
 }
 
 static void explain(lr_view *v)
 {
-    lr_view_explain(v, v->window.x, v->window.y);
+    lr_view_explain(v, v->window.x, v->window.y, false);
 }
 
 static void set_fov(lr_view *v, double factor)

@@ -303,7 +303,7 @@ static void save_camera(lr_loader *l, uint32_t index, const lr_camera *camera)
 }
 
 /* Explains a pixel of the picture that is shown, on a device of its own: the renderer goes on. */
-static void explain(lr_loader *l, uint32_t x, uint32_t y)
+static lr_explained_pixel *explain(lr_loader *l, uint32_t x, uint32_t y)
 {
     lr_board *b = l->board;
     lr_camera camera;
@@ -329,12 +329,26 @@ static void explain(lr_loader *l, uint32_t x, uint32_t y)
     if (!explained) {
         close_explainer(l);
         say(l, "%s", status ? error.message : "out of memory");
-        return;
     }
-    lr_board_lock(b);
-    lr_explained_pixel_free(l->news.explained);
-    l->news.explained = explained;
-    lr_board_unlock(b);
+    return explained;
+}
+
+static void tell_explained(lr_loader *l, lr_explained_pixel *explained, bool focus)
+{
+    lr_board_lock(l->board);
+    bool meets = explained->meets;
+    if (focus && meets) {
+        l->news.focus++;
+        l->news.focus_point = explained->met;
+    } else if (!focus && !l->jobs.focus) { /* a click that was not the first of two */
+        lr_explained_pixel *before = l->news.explained;
+        l->news.explained = explained;
+        explained = before;
+    }
+    lr_board_unlock(l->board);
+    lr_explained_pixel_free(explained);
+    if (focus && !meets)
+        say(l, "there is nothing to focus on");
     lr_window_wake();
 }
 
@@ -399,8 +413,11 @@ static bool work(lr_loader *l)
         next_device(l);
     if (jobs.load)
         load(l);
-    if (jobs.explain)
-        explain(l, jobs.explain_x, jobs.explain_y);
+    if (jobs.explain || jobs.focus) {
+        lr_explained_pixel *explained = explain(l, jobs.explain_x, jobs.explain_y);
+        if (explained)
+            tell_explained(l, explained, jobs.focus);
+    }
     lr_board_lock(b);
     bool wants_build = jobs.build || l->jobs.build;
     l->jobs.build = false;
@@ -424,7 +441,7 @@ static void wait_for_work(lr_loader *l)
     const lr_jobs *jobs = &l->jobs;
     lr_board_lock(l->board);
     bool waiting =
-        jobs->quit || jobs->load || jobs->build || jobs->save || jobs->next_device || jobs->explain;
+        jobs->quit || jobs->load || jobs->build || jobs->save || jobs->next_device || jobs->explain || jobs->focus;
     lr_board_unlock(l->board);
     if (!waiting)
         poll(files, 2, milliseconds(lr_follow_wait(l->follow, lr_now())));

@@ -13,7 +13,7 @@ typedef struct lr_jobs {
     bool quit, load, build, next_device, save;
     uint32_t save_index; /* of the scene's cameras */
     lr_camera save_camera;
-    bool explain;
+    bool explain, focus; /* tell what is at the pixel, or look where it is */
     uint32_t explain_x, explain_y;
 } lr_jobs;
 
@@ -28,6 +28,8 @@ typedef struct lr_news {
     uint64_t saved; /* grows with every camera that was saved: number saved_index is now */
     uint32_t saved_index;
     lr_camera saved_camera;
+    uint64_t focus; /* grows with every point to focus on */
+    lr_vec3 focus_point;
     lr_explained_pixel *explained; /* to be taken by the window; NULL: nothing new */
     uint64_t report;               /* grows with every change of */
     char *errors;                  /* what is wrong with the file; NULL: nothing */

@@ -52,13 +52,14 @@ void lr_view_build(lr_view *view)
     lr_loader_wake(&view->loader);
 }
 
-void lr_view_explain(lr_view *view, double x, double y)
+void lr_view_explain(lr_view *view, double x, double y, bool focus)
 {
     lr_jobs *jobs = &view->loader.jobs;
     if (x < 0 || y < 0 || x >= view->wish.width || y >= view->wish.height)
         return;
     lr_board_lock(&view->board);
-    jobs->explain = true;
+    jobs->explain = !focus;
+    jobs->focus = focus;
     jobs->explain_x = (uint32_t)x;
     jobs->explain_y = (uint32_t)y;
     lr_board_unlock(&view->board);
@@ -107,9 +108,9 @@ static void on_click(void *user, double x, double y, bool twice)
     lr_view *v = user;
     if (twice) {
         lr_view_forget_explained(v);
-        lr_view_key(v, 'f');
+        lr_view_explain(v, x, y, true);
     } else {
-        lr_view_explain(v, x, y);
+        lr_view_explain(v, x, y, false);
     }
 }
 
@@ -220,6 +221,11 @@ static void take_news(lr_view *v)
         char *name = v->cameras[news->saved_index].name;
         v->cameras[news->saved_index] = news->saved_camera;
         v->cameras[news->saved_index].name = name;
+    }
+    if (news->focus != v->seen_focus) {
+        v->seen_focus = news->focus;
+        v->wish.camera = lr_camera_focus(v->wish.camera, news->focus_point);
+        lr_view_wish_picture(v);
     }
     if (news->explained) {
         lr_explained_pixel_free(v->explained);

@@ -22,7 +22,7 @@ typedef struct lr_view {
         uint32_t samples, depth, seed;
         double exposure;
     } file; /* what the scene file says */
-    uint64_t seen_scene, seen_saved, seen_report, seen_message;
+    uint64_t seen_scene, seen_saved, seen_focus, seen_report, seen_message;
     char *errors;
     lr_explained_pixel *explained; /* NULL: none is shown */
     uint64_t explained_picture;    /* wish.picture that it is a pixel of */
@@ -42,8 +42,8 @@ void lr_view_wish_look(lr_view *view);
 /* Has other kernels made for what is wished. */
 void lr_view_build(lr_view *view);
 
-/* Has the pixel there explained, and forgets the one that was. */
-void lr_view_explain(lr_view *view, double x, double y);
+/* Has the pixel there explained, or the camera focus on what is seen there. */
+void lr_view_explain(lr_view *view, double x, double y, bool focus);
 void lr_view_forget_explained(lr_view *view);
 
 /* keys.c: what a key does, and the help that names them all; the caller frees it. */
