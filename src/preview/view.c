@@ -225,6 +225,7 @@ static void take_news(lr_view *v)
     if (news->focus != v->seen_focus) {
         v->seen_focus = news->focus;
         v->wish.camera = lr_camera_focus(v->wish.camera, news->focus_point);
+        lr_board_log(&v->board, "focused");
         lr_view_wish_picture(v);
     }
     if (news->explained) {

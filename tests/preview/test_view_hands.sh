@@ -51,11 +51,18 @@ at 90 90 && xdotool click 5
 moves 'the wheel off the middle' 'from to'
 back r
 at 100 160 && xdotool click --repeat 2 --delay 60 1
+await 60 more ' focused' 0
 moves 'a double click' 'from to'
 back r
+# Its rays lie over the picture until Escape.
+window_picture "$work/plain.ppm"
 at 100 160 && xdotool click 1
+await 60 differs "$work/plain.ppm"
+keep hands-explained
 moves 'a single click' ''
+await 20 shows "$work/plain.ppm"
 at 200 60 && press f
+await 60 more ' focused' 1
 moves 'f' 'from to'
 back r
 press Prior
