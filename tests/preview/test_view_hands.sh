@@ -61,7 +61,7 @@ await 60 differs "$work/plain.ppm"
 keep hands-explained
 moves 'a single click' ''
 await 20 shows "$work/plain.ppm"
-at 200 60 && press f
+at 200 170 && press f
 await 60 more ' focused' 1
 moves 'f' 'from to'
 back r
