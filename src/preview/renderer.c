@@ -18,11 +18,14 @@
 /* Until a window that has no image free, or no area, is asked again. */
 #define RETRY_NANOSECONDS 4000000
 
+/* Another wish stops a picture only after something of it can be seen: a hand that moves the camera
+ * faster than pictures are made would otherwise see none. */
 static bool go_on(void *user, double fraction)
 {
     (void)fraction;
     lr_renderer *r = user;
-    return !atomic_load(&r->board->hurry) && atomic_load(&r->board->wished) == r->started;
+    bool wanted = atomic_load(&r->board->wished) == r->started;
+    return !atomic_load(&r->board->hurry) && (wanted || !r->session->progressive->shown);
 }
 
 static void wait_a_little(void)
@@ -220,7 +223,9 @@ static lr_status serve(lr_renderer *r, lr_error *error)
         return status;
     bool had_picture = p->shown;
     if (!p->finished) {
-        status = lr_progressive_step(p, STEP_SECONDS, go_on, r, error);
+        do {
+            status = lr_progressive_step(p, STEP_SECONDS, go_on, r, error);
+        } while (!status && !p->shown);
         if (status == LR_ERROR_INTERRUPTED) {
             r->started = 0;
             return LR_OK;

@@ -1,6 +1,7 @@
 /* The renderer's thread: it owns the session that is shown, and traces and shows as the board says.
  * It looks at the board between steps of some 20 ms, and within a step stops between passes when
- * another picture is wished for; when all is done it sleeps. */
+ * another picture is wished for, but not before something of this one was shown; when all is done
+ * it sleeps. */
 #ifndef LR_PREVIEW_RENDERER_H
 #define LR_PREVIEW_RENDERER_H
 

@@ -32,10 +32,10 @@ act() {
     before=$(count ' scene ')
     cp scenes/shapes.yaml "$scene"
     await 20 more_or_ends ' scene ' "$before" && running || return
-    before=$(count ' session ')
+    before=$(count ' scene read')
     press v
     await 20 more_or_ends ' session ' "$before" && running || return
-    before=$(count ' session ')
+    before=$(count ' scene read')
     press v v v v
     await 20 more_or_ends ' session ' "$before" && running || return
     press Escape
