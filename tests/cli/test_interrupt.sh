@@ -24,7 +24,7 @@ for name in SIGINT SIGTERM SIGHUP; do
             python3 "$work/interrupt.py" "$LAVARAY" $small "$folder/x.ppm" $name $delay
         )
         # The limit is for a machine that does nothing else; the first dispatch may still compile.
-        [ "$delay" = 2 ] && [ "$milliseconds" -gt "${LAVARAY_INTERRUPT_MS:-500}" ] &&
+        [ "$delay" = 2 ] && [ "$milliseconds" -gt "${LAVARAY_INTERRUPT_MS:-1000}" ] &&
             problem "$name took $milliseconds ms"
         # At the start the signal may come before there is a handler: that, too, ends the process.
         case "$code $message" in

@@ -33,12 +33,12 @@ await() {
 
 start_display() {
     Xvfb -displayfd 3 -screen 0 1280x1024x24 -nolisten tcp 3>"$work/display" 2>"$work/xvfb" &
-    await 20 test -s "$work/display" || finish
+    await 60 test -s "$work/display" || finish
     DISPLAY=:$(cat "$work/display")
     export DISPLAY
     unset WAYLAND_DISPLAY
     openbox --sm-disable >"$work/openbox" 2>&1 &
-    await 20 has_manager || finish
+    await 60 has_manager || finish
 }
 
 has_manager() {

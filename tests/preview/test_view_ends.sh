@@ -2,7 +2,7 @@
 # scene; each with its exit code and its one message.
 . tests/preview/lib.sh
 start_display
-limit=${LAVARAY_INTERRUPT_MS:-500}
+limit=${LAVARAY_INTERRUPT_MS:-1000}
 
 # milliseconds COMMAND...: how long the view lives on after the command, into $took; $1 is the code.
 ends_by() {
