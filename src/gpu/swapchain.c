@@ -145,10 +145,15 @@ lr_status lr_swapchain_fit(lr_device *device, lr_swapchain *s, uint32_t width, u
                            lr_error *error)
 {
     lr_status status = LR_OK;
+    /* Asking the window system costs a round trip. */
+    if (s->handle && !s->stale && width == s->asked_width && height == s->asked_height)
+        return LR_OK;
     if (!s->surface)
         status = create_surface(device, s, error);
     if (status)
         return status;
+    s->asked_width = width;
+    s->asked_height = height;
     VkSurfaceCapabilitiesKHR can;
     VkResult result =
         device->vk.vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device->physical, s->surface, &can);
