@@ -33,16 +33,23 @@ await() {
 
 start_display() {
     Xvfb -displayfd 3 -screen 0 1280x1024x24 -nolisten tcp 3>"$work/display" 2>"$work/xvfb" &
-    await 60 test -s "$work/display" || finish
+    await 60 test -s "$work/display" || { cat "$work/xvfb" >&2 && finish; }
     DISPLAY=:$(cat "$work/display")
     export DISPLAY
     unset WAYLAND_DISPLAY
-    openbox --sm-disable >"$work/openbox" 2>&1 &
-    await 60 has_manager || finish
+    start_manager
+    await 60 has_manager || { cat "$work/xvfb" "$work/openbox" >&2 && finish; }
 }
 
+start_manager() {
+    openbox --sm-disable >>"$work/openbox" 2>&1 &
+    manager=$!
+}
+
+# It is started again if it has ended, which it did once, early, on a busy machine.
 has_manager() {
-    xprop -root _NET_SUPPORTING_WM_CHECK 2>/dev/null | grep -q 0x
+    kill -0 "$manager" 2>/dev/null || start_manager
+    timeout 5 xprop -root _NET_SUPPORTING_WM_CHECK 2>/dev/null | grep -q 0x
 }
 
 # ---- The program ------------------------------------------------------------------------------
