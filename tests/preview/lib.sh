@@ -46,7 +46,7 @@ start_manager() {
     manager=$!
 }
 
-# It is started again if it has ended, which it did once, early, on a busy machine.
+# Should it have ended early, it is started again.
 has_manager() {
     kill -0 "$manager" 2>/dev/null || start_manager
     timeout 5 xprop -root _NET_SUPPORTING_WM_CHECK 2>/dev/null | grep -q 0x
