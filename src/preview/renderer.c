@@ -69,6 +69,7 @@ static bool take_news(lr_renderer *r, lr_session **old, lr_edit **edit)
         r->session = b->next;
         r->proven = false;
         r->started = 0;
+        r->sheet_laid = false;
         b->next = NULL;
     }
     if (r->session) {
@@ -80,6 +81,7 @@ static bool take_news(lr_renderer *r, lr_session **old, lr_edit **edit)
     if (b->sheet_new) {
         free(r->sheet.pixels);
         r->sheet = b->sheet;
+        r->sheet_laid = false;
         b->sheet = (lr_sheet){0};
         b->sheet_new = false;
     }
@@ -92,6 +94,7 @@ static bool take_news(lr_renderer *r, lr_session **old, lr_edit **edit)
 static lr_status lay_sheet(lr_renderer *r, lr_error *error)
 {
     lr_display *d = &r->session->display;
+    r->sheet_laid = true;
     bool fits = r->sheet.pixels && r->sheet.width == d->width && r->sheet.height == d->height;
     return lr_display_set_overlay(d, fits ? r->sheet.pixels : NULL, error);
 }
@@ -119,7 +122,7 @@ static lr_status prepare(lr_renderer *r, lr_error *error)
     bool resized = width != s->display.width || height != s->display.height;
     if (resized)
         status = lr_display_resize(&s->display, width, height, error);
-    if (!status)
+    if (!status && (resized || !r->sheet_laid))
         status = lay_sheet(r, error);
     const lr_settings *now = &s->progressive->settings;
     if (status || (!resized && r->started == r->wish.picture && now->width == width))

@@ -12,6 +12,7 @@ typedef struct lr_renderer {
     pthread_t thread;
     lr_session *session;
     lr_wish wish;            /* that is being served */
+    bool sheet_laid;         /* over the session's picture */
     lr_sheet sheet;          /* waiting until the picture has its size */
     uint64_t started;        /* wish.picture that the session works on; 0: none */
     double last_shown, told; /* when, in seconds */
