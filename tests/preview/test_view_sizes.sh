@@ -50,6 +50,7 @@ shows_soon "$work/want.ppm" sizes-moved
 # Larger than the scene's own, to full screen and back, again and again.
 for i in 1 2 3; do
     xdotool windowsize "$window" 800 600
+    await 20 sized 800x600 # else the window manager may be asked for full screen first
     press F11
     await 20 sized 1280x1024
     press F11
