@@ -31,8 +31,6 @@ typedef struct lr_sheet {
 typedef struct lr_shown {
     uint32_t width, height;
     uint32_t samples_done, samples;
-    double fraction; /* of the camera rays */
-    bool finished;
     double rays, seconds; /* traced for this picture, and in which time */
     char device[256];
     uint64_t picture; /* the wish's that this is */

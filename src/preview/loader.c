@@ -1,7 +1,5 @@
 #include "preview/loader.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -87,9 +85,10 @@ static lr_status announce(lr_loader *l, const lr_scene *scene, lr_error *error)
     }
     if (!cameras)
         return lr_fail(error, LR_ERROR_MEMORY, "out of memory");
-    double square = 0;
-    for (int i = 0; i < 3 && facts.bounded; i++)
-        square += (facts.max[i] - facts.min[i]) * (facts.max[i] - facts.min[i]);
+    lr_vec3 extent = {0, 0, 0};
+    if (facts.bounded)
+        extent = (lr_vec3){facts.max[0] - facts.min[0], facts.max[1] - facts.min[1],
+                           facts.max[2] - facts.min[2]};
     lr_board_lock(l->board);
     free_cameras(&l->news);
     l->news.cameras = cameras;
@@ -98,9 +97,7 @@ static lr_status announce(lr_loader *l, const lr_scene *scene, lr_error *error)
     l->news.depth = scene->image.depth;
     l->news.seed = scene->image.seed;
     l->news.exposure = scene->image.exposure;
-    l->news.size = lr_vec3_length((lr_vec3){facts.bounded ? facts.max[0] - facts.min[0] : 0,
-                                            facts.bounded ? facts.max[1] - facts.min[1] : 0,
-                                            facts.bounded ? facts.max[2] - facts.min[2] : 0});
+    l->news.size = lr_vec3_length(extent);
     l->news.scene++;
     lr_board_unlock(l->board);
     memcpy(l->sha256, scene->sha256, sizeof l->sha256);
@@ -440,8 +437,8 @@ static void wait_for_work(lr_loader *l)
                               {.fd = lr_follow_descriptor(l->follow), .events = POLLIN}};
     const lr_jobs *jobs = &l->jobs;
     lr_board_lock(l->board);
-    bool waiting =
-        jobs->quit || jobs->load || jobs->build || jobs->save || jobs->next_device || jobs->explain || jobs->focus;
+    bool waiting = jobs->quit || jobs->load || jobs->build || jobs->save || jobs->next_device ||
+                   jobs->explain || jobs->focus;
     lr_board_unlock(l->board);
     if (!waiting)
         poll(files, 2, milliseconds(lr_follow_wait(l->follow, lr_now())));

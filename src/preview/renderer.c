@@ -158,8 +158,6 @@ static void tell(lr_renderer *r)
         .height = p->settings.height,
         .samples_done = p->finished ? p->settings.samples : p->sweep.first_sample,
         .samples = p->settings.samples,
-        .fraction = lr_progressive_done(p),
-        .finished = done,
         .rays = (double)(s->primary.traced + s->reflected.traced + s->refracted.traced +
                          s->shadow.traced),
         .seconds = s->trace_seconds,
