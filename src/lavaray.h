@@ -290,7 +290,7 @@ typedef struct lr_render_stats {
     lr_integrator integrator;
     struct {
         uint64_t traced, hit;
-    } primary, reflected, refracted, shadow;
+    } primary, reflected, refracted, shadow, bounced; /* bounced: the later rays of paths */
     uint64_t passed;          /* crossings of surfaces hidden inside another medium */
     uint64_t dropped_depth;   /* rays not traced because the depth was used up */
     uint64_t dropped_weight;  /* ... because their weight was below min_weight */

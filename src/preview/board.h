@@ -17,8 +17,9 @@ typedef struct lr_wish {
     uint32_t samples, depth, seed;
     double exposure;
     lr_inspect inspect;
-    uint64_t picture; /* grows whenever another picture is wished for: camera, depth, ... */
-    uint64_t look;    /* ... or the same to be shown in another way */
+    lr_integrator integrator; /* of what is shown as light */
+    uint64_t picture;         /* grows whenever another picture is wished for: camera, depth, ... */
+    uint64_t look;            /* ... or the same to be shown in another way */
 } lr_wish;
 
 /* Pixels to lay over the picture; see lr_display_set_overlay. */
