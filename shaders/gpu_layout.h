@@ -82,15 +82,16 @@ typedef struct vec4 {
 #define LR_SPEC_INSPECT 33 /* the film gets frame.inspect instead of light */
 #define LR_SPEC_EXPLAIN 34 /* every ray and light is noted: gpu_notes */
 #define LR_SPEC_PATH 35    /* paths instead of ray trees: path.comp */
-#define LR_SPEC_EMITTERS 36        /* paths have some light source to choose */
-#define LR_SPEC_DELTA_LIGHTS 37    /* ... from scene.lights; */
-#define LR_SPEC_SOFT_LIGHTS 38     /* some of these have an extent */
-#define LR_SPEC_FLAT_EMITTERS 39   /* flat surfaces that shine: */
-#define LR_SPEC_DISK_EMITTERS 40   /* some are disks, */
-#define LR_SPEC_TRIANGLE_EMITTERS 41 /* or triangles */
-#define LR_SPEC_SPHERE_EMITTERS 42
-#define LR_SPEC_EMITS_FRONT 43 /* some surface shines on one side alone */
-#define LR_SPEC_COUNT 44
+#define LR_SPEC_FEW 36     /* ... whose rays are to test all primitives */
+#define LR_SPEC_EMITTERS 37          /* paths have some light source to choose */
+#define LR_SPEC_DELTA_LIGHTS 38      /* ... from scene.lights; */
+#define LR_SPEC_SOFT_LIGHTS 39       /* some of these have an extent */
+#define LR_SPEC_FLAT_EMITTERS 40     /* flat surfaces that shine: */
+#define LR_SPEC_DISK_EMITTERS 41     /* some are disks, */
+#define LR_SPEC_TRIANGLE_EMITTERS 42 /* or triangles */
+#define LR_SPEC_SPHERE_EMITTERS 43
+#define LR_SPEC_EMITS_FRONT 44 /* some surface shines on one side alone */
+#define LR_SPEC_COUNT 45
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -495,6 +496,7 @@ struct gpu_work {
     uint film_first;      /* where the tile's first pixel is in the film, */
     uint film_pitch;      /* and how many pixels lie between it and the one below */
 };
+#define LR_SHADOW_THROUGH 4u /* light that no path finds otherwise comes through transparent objects */
 #define LR_SHADOW_LIGHTS 4 /* light l goes to segment l modulo this */
 
 /* ---- Queues ---- */
@@ -544,7 +546,7 @@ struct gpu_shadow_ray {
     vec3 origin; /* the point */
     uint pixel;  /* in kernels that explain, which have but one: the light's note */
     vec3 value;  /* what it adds to the pixel */
-    uint light;
+    uint light;  /* of a path: LR_SHADOW_THROUGH or 0 */
 };
 LR_ROWS(gpu_shadow_ray, 2)
 
