@@ -103,6 +103,7 @@ static void put_light(hasher *h, const lr_light *light)
     put_vector(h, light->direction);
     put_number(h, light->angle);
     put_number(h, light->inner);
+    put_number(h, light->radius);
     put_count(h, light->shadows);
 }
 
@@ -127,6 +128,7 @@ static void put_material(hasher *h, const lr_material *m)
     put_count(h, (uint32_t)m->priority);
     put_number(h, m->alpha_cutoff);
     put_count(h, m->one_sided);
+    put_count(h, m->emits);
 }
 
 static void put_shape(hasher *h, const lr_object *object)

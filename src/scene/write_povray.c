@@ -140,8 +140,11 @@ static void put_lights(lr_writer *writer)
     lr_light added = lr_default_light(&scene->cameras[0]);
     if (scene->default_light)
         put_light(writer, &added);
-    for (uint32_t i = 0; i < scene->light_count; i++)
+    for (uint32_t i = 0; i < scene->light_count; i++) {
         put_light(writer, &scene->lights[i]);
+        if (lr_light_is_soft(&scene->lights[i]))
+            lr_writer_cannot(writer, "soft lights are written as points");
+    }
 }
 
 /* ---- Materials ----------------------------------------------------------------------------- */
