@@ -91,6 +91,12 @@ static void put_camera(hasher *h, const lr_camera *camera)
     put_vector(h, camera->up);
     put_number(h, camera->fov);
     put_count(h, camera->fov_to_centers);
+    put_count(h, camera->projection);
+    put_number(h, camera->height);
+    put_number(h, camera->aperture);
+    put_number(h, camera->focus);
+    put_count(h, camera->blades);
+    put_number(h, camera->blade_rotation);
 }
 
 static void put_light(hasher *h, const lr_light *light)
