@@ -143,6 +143,7 @@ static lr_settings wished_settings(lr_loader *l, lr_camera *camera)
         .samples = wish->samples,
         .depth = wish->depth,
         .seed = wish->seed,
+        .filter = wish->filter,
         .camera = camera,
         .inspect = wish->inspect,
         .trees = &l->trees,

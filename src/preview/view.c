@@ -382,6 +382,7 @@ static lr_status first_wish(lr_view *v, const lr_scene *scene, lr_error *error)
         .samples = settings.samples,
         .depth = settings.depth,
         .seed = settings.seed,
+        .filter = settings.filter,
         .exposure = v->options->has_exposure ? v->options->exposure : scene->image.exposure,
         .picture = 1,
     };

@@ -1,4 +1,4 @@
-#include "render/pack.h"
+#include "render/pack_internal.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -198,7 +198,7 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
     };
     packed->constants[LR_SPEC_INSPECT] = settings->inspect != LR_INSPECT_LIGHT;
     packed->constants[LR_SPEC_PATH] = settings->integrator == LR_INTEGRATOR_PATH;
-    packed->constants[LR_SPEC_CAMERA] = has_lens(scene);
+    packed->constants[LR_SPEC_CAMERA] = has_lens(scene) || lr_pack_filter(scene, settings);
     packed->constants[LR_SPEC_FOG] = scene->fog_density > 0;
     lr_status status = lr_pack_texture_records(scene, packed, error);
     if (!status)

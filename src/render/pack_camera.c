@@ -49,6 +49,15 @@ static void pack_view(const lr_camera *camera, const lr_settings *settings, stru
     frame->lens.up = lr_pack_vec3(lr_vec3_scale(up, camera->aperture / 2));
 }
 
+uint32_t lr_pack_filter(const lr_scene *scene, const lr_settings *settings)
+{
+    lr_filter filter =
+        settings->filter ? settings->filter : (lr_filter)(scene->image.filter + LR_FILTER_BOX);
+    return filter == LR_FILTER_TENT              ? LR_GPU_FILTER_TENT
+           : filter == LR_FILTER_BLACKMAN_HARRIS ? LR_GPU_FILTER_BLACKMAN_HARRIS
+                                                 : 0;
+}
+
 static void pack_lens(const lr_camera *camera, const lr_settings *settings, struct gpu_lens *lens)
 {
     static const uint32_t projections[] = {0, LR_GPU_ORTHOGRAPHIC, LR_GPU_PANORAMA};
@@ -66,6 +75,7 @@ void lr_pack_camera(const lr_scene *scene, const lr_settings *settings, lr_packe
     struct gpu_frame *frame = &packed->frame;
     pack_view(camera, settings, frame);
     pack_lens(camera, settings, &frame->lens);
+    frame->lens.kind |= lr_pack_filter(scene, settings);
     frame->half_width = (float)(settings->width * 0.5);
     frame->half_height = (float)(settings->height * 0.5);
     frame->samples = settings->samples;

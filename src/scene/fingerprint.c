@@ -76,6 +76,7 @@ static void put_surroundings(hasher *h, const lr_scene *scene)
     put_number(h, scene->image.min_weight);
     put_number(h, scene->image.exposure);
     put_count(h, scene->image.integrator);
+    put_count(h, scene->image.filter);
     put_vector(h, scene->ambient);
     put_vector(h, scene->background[0]);
     put_vector(h, scene->background[1]);

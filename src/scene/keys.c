@@ -55,6 +55,7 @@ static const lr_field camera_fields[] = {
 const lr_record lr_camera_record =
     RECORD("camera", "Where the picture is taken from.", camera_fields, 0);
 
+static const char *const filters[] = {"box", "tent", "blackman-harris", NULL};
 static const char *const integrators[] = {"whitted", "path", NULL};
 static const lr_field image_fields[] = {
     {"width", LR_FIELD_INTEGER, 0, RANGE(1, 32768), DEFAULT(640), MEMBER(lr_scene, image.width),
@@ -75,6 +76,8 @@ static const lr_field image_fields[] = {
     {"integrator", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_scene, image.integrator),
      .choices = integrators,
      .doc = "How light is found: mirrors, glass and direct light, or all of its ways by chance."},
+    {"filter", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_scene, image.filter), .choices = filters,
+     .doc = "How samples weigh by their distance from the middle of the pixel."},
 };
 const lr_record lr_image_record = RECORD("image", "The picture to be made.", image_fields, 0);
 

@@ -199,6 +199,7 @@ struct lr_scene {
         double min_weight; /* 0..1 */
         double exposure;   /* stops, -64..64 */
         enum { LR_SCENE_WHITTED, LR_SCENE_PATH } integrator;
+        enum { LR_SCENE_BOX, LR_SCENE_TENT, LR_SCENE_BLACKMAN_HARRIS } filter;
     } image;
 };
 

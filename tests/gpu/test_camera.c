@@ -200,6 +200,50 @@ static void test_blades(void **state)
     assert_near(right.yyy, 0, 0.25 * skew);
 }
 
+/* A ball 12 pixels wide, blurred by filters: variances add up. */
+static void test_filters(void **state)
+{
+    static const char world[] =
+        "camera: {from: [0, 0, 8], to: [0, 0, 0], projection: orthographic, height: 24}\n"
+        "image: {width: 24, height: 24, samples: 1024, integrator: %s, filter: %s}\n"
+        "background: 0\nambient: 0\nlights: []\n"
+        "objects: [{sphere: {radius: 6, material: {color: 0, emission: 1}}}]\n";
+    const char *names[] = {"box", "tent", "blackman-harris"};
+    const double variances[] = {1.0 / 12, 1.0 / 6, 0.172658};
+    for (int i = 0; i < 6; i++) {
+        char text[1024];
+        snprintf(text, sizeof text, world, i / 3 ? "path" : "whitted", names[i % 3]);
+        picture p = render_text(*state, text, NULL);
+        spread s = spread_of(&p);
+        assert_near(s.sum, 36 * PI, 0.1);
+        assert_near(s.x, 12, 0.02);
+        assert_near(s.y, 12, 0.02);
+        assert_near(s.xx, 36 / 4.0 + variances[i % 3], 0.035);
+        assert_near(s.yy, 36 / 4.0 + variances[i % 3], 0.035);
+        /* The options' filter comes before the scene's. */
+        picture other =
+            render_text(*state, text, &(lr_render_options){.filter = LR_FILTER_BLACKMAN_HARRIS});
+        assert_int_equal(strcmp(p.stats.hash, other.stats.hash) == 0, i % 3 == 2);
+        free_picture(&p);
+        free_picture(&other);
+    }
+}
+
+/* One sample goes through the middle of the pixel, whatever the filter. */
+static void test_single_sample(void **state)
+{
+    char hash[65] = "";
+    for (lr_filter filter = LR_FILTER_BOX; filter <= LR_FILTER_BLACKMAN_HARRIS; filter++) {
+        picture p = render_text(
+            *state, "camera: {}\nimage: {width: 40, height: 30}\nobjects: [{sphere: {}}]\n",
+            &(lr_render_options){.filter = filter});
+        if (filter > LR_FILTER_BOX)
+            assert_string_equal(p.stats.hash, hash);
+        memcpy(hash, p.stats.hash, sizeof hash);
+        free_picture(&p);
+    }
+}
+
 /* The same pinhole camera has the same picture in the company of lenses. */
 static void test_pinhole_bits(void **state)
 {
@@ -231,6 +275,8 @@ int main(void)
         cmocka_unit_test(test_blur),
         cmocka_unit_test(test_blades),
         cmocka_unit_test(test_pinhole_bits),
+        cmocka_unit_test(test_filters),
+        cmocka_unit_test(test_single_sample),
         cmocka_unit_test(test_validation_is_silent),
     };
     return cmocka_run_group_tests(tests, setup_device, NULL);
