@@ -260,6 +260,15 @@ typedef enum lr_integrator {
     LR_INTEGRATOR_PATH,    /* all ways of light, by chance: Kajiya's paths, 1986 */
 } lr_integrator;
 
+/* How samples weigh by their distance from the middle of the pixel: in each direction up to 0.5, 1 or
+ * 1.5 pixels away. */
+typedef enum lr_filter {
+    LR_FILTER_DEFAULT, /* as the scene says */
+    LR_FILTER_BOX,
+    LR_FILTER_TENT,
+    LR_FILTER_BLACKMAN_HARRIS,
+} lr_filter;
+
 typedef struct lr_render_options {
     uint32_t width, height; /* 0: as the scene says */
     uint32_t samples;       /* per pixel; 0: as the scene says */
@@ -269,6 +278,7 @@ typedef struct lr_render_options {
     bool has_seed;
     const char *camera; /* NULL: the scene's first */
     lr_integrator integrator;
+    lr_filter filter;
     struct {
         uint32_t x, y, width, height; /* of the picture; width 0: all of it */
     } crop;

@@ -220,6 +220,9 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
     if (v->picture.camera) {
         fprintf(out, ", camera %.200s", v->picture.camera);
     }
+    if (v->picture.filter) {
+        fprintf(out, ", filter %s", v->picture.filter);
+    }
     if (encoding->exposure != 0) {
         fprintf(out, ", exposure %.7g", (double)encoding->exposure);
     }

@@ -15,6 +15,7 @@ typedef struct lr_wish {
     uint32_t width, height; /* as far as the window knows; 0: it is not to be seen */
     lr_camera camera;       /* without name */
     uint32_t samples, depth, seed;
+    lr_filter filter; /* that of the options */
     double exposure;
     lr_inspect inspect;
     lr_integrator integrator; /* of what is shown as light */

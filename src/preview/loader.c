@@ -144,6 +144,7 @@ static lr_settings wished_settings(lr_loader *l, lr_camera *camera)
         .samples = wish->samples,
         .depth = wish->depth,
         .seed = wish->seed,
+        .filter = wish->filter,
         .camera = camera,
         .inspect = wish->inspect,
         .integrator = wish->inspect == LR_INSPECT_LIGHT ? wish->integrator : LR_INTEGRATOR_WHITTED,

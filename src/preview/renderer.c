@@ -133,6 +133,7 @@ static lr_status prepare(lr_renderer *r, lr_error *error)
         .samples = r->wish.samples,
         .depth = r->wish.depth,
         .seed = r->wish.seed,
+        .filter = r->wish.filter,
         .camera = &r->wish.camera,
         .inspect = inspect_now(r),
     };

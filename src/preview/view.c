@@ -10,6 +10,7 @@
 #include "preview/camera_control.h"
 #include "preview/overlay.h"
 #include "render/settings.h"
+#include "scene/camera.h"
 
 #define MESSAGE_SECONDS 4.0
 #define IDLE_SECONDS 0.25      /* between looks at Ctrl-C */
@@ -148,17 +149,6 @@ static bool fly(lr_view *v, double seconds)
 
 /* ---- What the other threads tell ---------------------------------------------------------- */
 
-static bool same_vec3(lr_vec3 a, lr_vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
-static bool same_camera(const lr_camera *a, const lr_camera *b)
-{
-    return same_vec3(a->from, b->from) && same_vec3(a->to, b->to) && same_vec3(a->up, b->up) &&
-           a->fov == b->fov && a->fov_to_centers == b->fov_to_centers;
-}
-
 static void free_cameras(lr_view *v)
 {
     for (uint32_t i = 0; i < v->camera_count; i++)
@@ -208,7 +198,7 @@ static void adopt_cameras(lr_view *v, lr_news *news)
     if (v->camera >= news->camera_count)
         v->camera = 0;
     const lr_camera *now = &news->cameras[v->camera];
-    if (!same_camera(&before, now)) {
+    if (!lr_camera_same(&before, now)) {
         v->wish.camera = *now;
         v->wish.camera.name = NULL;
     }
@@ -407,6 +397,7 @@ static lr_status first_wish(lr_view *v, const lr_scene *scene, lr_error *error)
         .depth = settings.depth,
         .seed = settings.seed,
         .integrator = settings.integrator,
+        .filter = settings.filter,
         .exposure = v->options->has_exposure ? v->options->exposure : scene->image.exposure,
         .picture = 1,
     };

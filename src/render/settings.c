@@ -51,6 +51,7 @@ lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_
         .crop_height = options->crop.height,
         .integrator = options->integrator ? options->integrator
                                           : (lr_integrator)(scene->image.integrator + 1),
+        .filter = options->filter,
         .leaf_size = options->leaf_size,
         .threads = options->threads,
     };
