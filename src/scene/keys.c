@@ -38,6 +38,8 @@ static const lr_field camera_fields[] = {
 const lr_record lr_camera_record =
     RECORD("camera", "Where the picture is taken from.", camera_fields, 0);
 
+static const char *const tones[] = {"none", "reinhard", "aces", "agx", NULL};
+
 static const lr_field image_fields[] = {
     {"width", LR_FIELD_INTEGER, 0, RANGE(1, 32768), DEFAULT(640), MEMBER(lr_scene, image.width),
      .doc = "Width in pixels."},
@@ -53,6 +55,11 @@ static const lr_field image_fields[] = {
      .doc = "Rays whose weight in the pixel is below this are not traced."},
     {"exposure", LR_FIELD_NUMBER, 0, RANGE(-64, 64), DEFAULT(0), MEMBER(lr_scene, image.exposure),
      .doc = "Stops: the picture is written 2^exposure times as bright."},
+    {"tone", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_scene, image.tone), .choices = tones,
+     .doc = "How light becomes a colour of PPM and PNG files; none clips it at 1."},
+    {"white", LR_FIELD_NUMBER, LR_DERIVED, RANGE(LR_WHITE_MIN, LR_WHITE_MAX),
+     MEMBER(lr_scene, image.white), .derived = "off",
+     .doc = "White balance: light of this colour temperature, in kelvin, becomes white."},
 };
 const lr_record lr_image_record = RECORD("image", "The picture to be made.", image_fields, 0);
 

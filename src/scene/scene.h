@@ -189,6 +189,8 @@ struct lr_scene {
         uint32_t seed;
         double min_weight; /* 0..1 */
         double exposure;   /* stops, -64..64 */
+        lr_tone tone;
+        double white; /* kelvin, LR_WHITE_MIN..LR_WHITE_MAX; 0: off */
     } image;
 };
 

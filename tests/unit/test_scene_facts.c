@@ -75,6 +75,8 @@ static void test_hash(void **state)
         "camera: {}\nobjects: [{sphere: {}}]\n",
         "camera: {fov_to_centers: true}\nobjects: [{sphere: {}}]\n",
         "camera: {}\nimage: {seed: 1}\nobjects: [{sphere: {}}]\n",
+        "camera: {}\nimage: {tone: agx}\nobjects: [{sphere: {}}]\n",
+        "camera: {}\nimage: {white: 3200}\nobjects: [{sphere: {}}]\n",
         "camera: {}\nlights: []\nobjects: [{sphere: {}}]\n",
         "camera: {}\nobjects: [{sphere: {radius: 1.0000000000000002}}]\n",
         "camera: {}\nobjects: [{sphere: {shadow: false}}]\n",
