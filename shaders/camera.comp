@@ -8,6 +8,7 @@
 #include "bindings.glsl"
 #include "camera.glsl"
 #include "queue.glsl"
+#include "sampler.glsl"
 
 layout(local_size_x = LR_TILE_GROUP, local_size_y = LR_TILE_GROUP) in;
 
@@ -20,7 +21,13 @@ void main()
     if (!wanted)
         return;
     uvec2 pixel = uvec2(work.tile_x, work.tile_y) + at * work.step;
-    vec2 position = vec2(pixel) + sample_position(pixel, work.first_sample + gl_WorkGroupID.z);
+    uint number = work.first_sample + gl_WorkGroupID.z;
+    path_key key = key_of(pixel, frame.seed, number);
+    vec2 position = vec2(pixel);
+    if (has_paths)
+        position = position + sample_pair(key, pair_pixel);
+    else
+        position = position + sample_position(pixel, number);
     uint in_film = work.film_first + at.y * work.step * work.film_pitch + at.x * work.step;
     // Squares of 8 x 8 pixels one after the other, those at the tile's edges smaller, so that rays that
     // are neighbours in the queue are so in the picture.
@@ -32,4 +39,6 @@ void main()
     store_ray(slot, gpu_ray(frame.origin, in_film, camera_direction(position),
                             LR_KIND_PRIMARY << LR_STATE_KIND_SHIFT, vec3(1.0), 0u, frame.inside0,
                             frame.inside1, frame.inside2, frame.inside3));
+    if (has_paths)
+        store_path(slot, gpu_path(key.pixel, key.order, 0.0, 0.0));
 }

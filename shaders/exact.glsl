@@ -1,5 +1,5 @@
-// The project's own division, roots, exponential and logarithm: only + - *, comparisons, selects
-// and bit operations, in a fixed order, so that every device computes the same bits (docs/exact.md).
+// The project's own division, roots, exponential, logarithm, sine and cosine: only + - *,
+// comparisons, selects and bit operations, in a fixed order, so that every device computes the same bits (docs/exact.md).
 // Error bounds are for the stated domain and measured in tests/gpu/test_exact.c.
 #ifndef EXACT_GLSL
 #define EXACT_GLSL
@@ -118,6 +118,27 @@ float ex_pow(float x, float y)
 {
     float r = ex_exp2(y * ex_log2(x));
     return y == 0.0 ? 1.0 : (x < 7.888609052210118e-31 ? 0.0 : r);
+}
+
+// The cosine and sine of `turns` turns (of 2 pi), for |turns| <= 2^20, each within 1.2e-7; whole
+// quarters are exact. Polynomials on the eighth of a turn to either side of the nearest quarter: the
+// distance from it is exact, and so is the choice among the four.
+vec2 ex_cos_sin_turns(float turns)
+{
+    float quarter = floor(4.0 * turns + 0.5);
+    float f = turns - 0.25 * quarter; // -1/8 .. 1/8
+    float z = f * f;
+    float s = 41.4728317 * z - 76.6978683;
+    s = s * z + 81.6052017;
+    s = s * z - 41.3417015;
+    s = (s * z + 6.28318548) * f;
+    float c = 26.1192188 * z - 60.2404518;
+    c = c * z + 85.4567947;
+    c = c * z - 64.9393921;
+    c = 1.0 - (c * z + 19.7392082) * z;
+    uint q = uint(int(quarter));
+    vec2 turned = mix(vec2(c, s), vec2(s, c), bvec2((q & 1u) != 0u));
+    return mix(turned, -turned, bvec2(((q + 1u) & 2u) != 0u, (q & 2u) != 0u));
 }
 
 // Whether all components are finite.

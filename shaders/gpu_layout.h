@@ -81,7 +81,8 @@ typedef struct vec4 {
 #define LR_SPEC_FALLOFF 32 /* some light fades with distance */
 #define LR_SPEC_INSPECT 33 /* the film gets frame.inspect instead of light */
 #define LR_SPEC_EXPLAIN 34 /* every ray and light is noted: gpu_notes */
-#define LR_SPEC_COUNT 35
+#define LR_SPEC_PATH 35    /* paths instead of ray trees: path.comp */
+#define LR_SPEC_COUNT 36
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -434,6 +435,7 @@ struct gpu_work {
 
 /* ---- Queues ---- */
 #define LR_STATE_DEPTH 255u /* bounces so far */
+#define LR_STATE_LAST 1024u /* of a path: sees lights alone */
 #define LR_STATE_KIND_SHIFT 8
 #define LR_STATE_KIND 768u
 #define LR_STATE_PASSES_SHIFT 16
@@ -456,6 +458,15 @@ struct gpu_ray {
 };
 LR_ROWS(gpu_ray, 4)
 
+/* What a ray has behind that when it is part of a path. */
+struct gpu_path {
+    uint pixel;     /* path_key in sampler.glsl */
+    uint order;
+    float pdf;      /* of its direction, per solid angle; 0: it could have been no other */
+    float distance; /* from where the path bounced last to the ray's origin */
+};
+LR_ROWS(gpu_path, 1)
+
 struct gpu_hit {
     uint ray; /* in the queue */
     float t;
@@ -472,6 +483,13 @@ struct gpu_shadow_ray {
     uint light;
 };
 LR_ROWS(gpu_shadow_ray, 2)
+
+/* What it has behind that when it comes from a path: where to, as shadow_ray in light.glsl. */
+struct gpu_shadow_way {
+    vec3 direction; /* unit */
+    float t_max;
+};
+LR_ROWS(gpu_shadow_way, 1)
 
 /* What a pass counts. The first three words are an indirect dispatch. */
 struct gpu_counters {

@@ -4,7 +4,7 @@
 
 #include "bindings.glsl"
 
-const uint ray_rows = 4u;
+const uint ray_rows = has_paths ? 5u : 4u;
 
 uvec4 ray_media(gpu_ray ray)
 {
@@ -53,6 +53,18 @@ void store_ray(uint index, gpu_ray ray)
     rays_out[at + 2u] = pack_row(ray.weight, note);
     if (has_media)
         rays_out[at + 3u] = ray_media(ray);
+}
+
+gpu_path load_path(uint index)
+{
+    uvec4 a = ray_row(ray_rows * index + 4u);
+    return gpu_path(a.x, a.y, uintBitsToFloat(a.z), uintBitsToFloat(a.w));
+}
+
+void store_path(uint index, gpu_path path)
+{
+    rays_out[ray_rows * index + 4u] =
+        uvec4(path.pixel, path.order, floatBitsToUint(path.pdf), floatBitsToUint(path.distance));
 }
 
 gpu_hit load_hit(uint index)

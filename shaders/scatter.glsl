@@ -3,9 +3,9 @@
 #define SCATTER_GLSL
 
 #include "batch.glsl"
+#include "boundary.glsl"
 #include "exact.glsl"
 #include "fresnel.glsl"
-#include "media.glsl"
 #include "notes.glsl"
 #include "queue.glsl"
 #include "scene_data.glsl"
@@ -62,35 +62,13 @@ void emit(uint slot, child c, uint pixel, surface s, vec3 n)
 bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids, gpu_material m,
              bool absent, bool wanted)
 {
-    bool entering = ex_dot(ray.direction, s.normal) < 0.0;
     float c1 = min(max(-ex_dot(ray.direction, lit_by), 0.0), 1.0);
-    uvec4 media = ray_media(ray);
-    uvec4 beyond = media;
-    bool solid = has_media && (ids.y & LR_FLAG_SOLID) != 0u &&
-                 (ids.y & LR_FLAG_TRANSPARENT) != 0u && !absent;
     uint depth = ray.state & LR_STATE_DEPTH;
-
-    bool hidden = absent, lost = false;
-    float ior1 = 1.0, ior2 = m.ior, gamma = 1.0;
-    if (has_media) {
-        bool placed = true;
-        uint before = media_top(media);
-        if (solid && entering && !media_contains(media, ids.z))
-            beyond = media_with(media, ids.z, placed);
-        if (solid && !entering)
-            beyond = media_without(media, ids.z);
-        if (wanted && !placed)
-            atomicAdd(counters.dropped_nesting, 1u);
-        if (explains)
-            lost = !placed;
-        uint after = media_top(beyond);
-        hidden = hidden || (solid && before == after);
-        ior1 = load_medium(before).ior;
-        if (solid) {
-            ior2 = load_medium(after).ior;
-            gamma = ex_div(ior1, ior2);
-        }
-    }
+    boundary b = boundary_at(ray, s, ids, m.ior, absent);
+    bool hidden = b.hidden, solid = b.solid, lost = !b.placed;
+    float ior1 = b.ior1, ior2 = b.ior2, gamma = b.gamma;
+    if (wanted && lost)
+        atomicAdd(counters.dropped_nesting, 1u);
 
     vec3 reflect_weight = weight * m.reflect;
     vec3 transmit_weight = weight * m.transmit;
@@ -119,9 +97,9 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids
 
     uint passes = ray.state >> LR_STATE_PASSES_SHIFT;
     uint next = (ray.state & ~(LR_STATE_DEPTH | LR_STATE_KIND)) | (depth + 1u);
-    child mirrored = child(reflect_weight, reflected, 1.0, media,
+    child mirrored = child(reflect_weight, reflected, 1.0, ray_media(ray),
                            next | (LR_KIND_REFLECTED << LR_STATE_KIND_SHIFT));
-    child through = child(transmit_weight, refracted, -1.0, beyond,
+    child through = child(transmit_weight, refracted, -1.0, b.beyond,
                           next | (LR_KIND_REFRACTED << LR_STATE_KIND_SHIFT));
     uint mirrored_fate = LR_FATE_NONE, through_fate = LR_FATE_NONE;
     bool emit_mirrored = wanted && !hidden && admit(mirrored, depth, mirrored_fate);
@@ -131,7 +109,7 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids
         // it were not there. The ray goes on as the same ray.
         uint kind = ray_kind(ray);
         uint on_kind = kind == LR_KIND_PRIMARY ? LR_KIND_REFRACTED : kind;
-        through = child(weight, ray.direction, -1.0, beyond,
+        through = child(weight, ray.direction, -1.0, b.beyond,
                         depth | (on_kind << LR_STATE_KIND_SHIFT) |
                             ((passes + 1u) << LR_STATE_PASSES_SHIFT));
         emit_through = passes < uint(LR_PASSES_MAX);
@@ -143,7 +121,7 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids
 
     if (explains && wanted) {
         lost = lost || (hidden && !emit_through);
-        note_refraction(media_top(beyond), ior1, ior2, c2);
+        note_refraction(media_top(b.beyond), ior1, ior2, c2);
         note_children(reflect_weight, reflected, transmit_weight, refracted,
                       (solid ? LR_NOTE_BENDS : 0u) | (total ? LR_NOTE_TOTAL : 0u) |
                           (m.flags & LR_GPU_FRESNEL) * LR_NOTE_FRESNEL |

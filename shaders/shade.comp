@@ -12,13 +12,11 @@
 #include "inspect.glsl"
 #include "light.glsl"
 #include "notes.glsl"
-#include "pattern.glsl"
 #include "queue.glsl"
 #include "scatter.glsl"
+#include "shading.glsl"
 #include "shadow.glsl"
 #include "shadow_queue.glsl"
-#include "surface.glsl"
-#include "texture.glsl"
 
 layout(local_size_x = LR_GROUP_SIZE) in;
 
@@ -101,15 +99,6 @@ void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m,
     }
 }
 
-// A normal that is interpolated may face away from the ray where the surface itself does not: it is
-// bent towards it, and so reflections stay in front.
-vec3 facing(vec3 n, vec3 d)
-{
-    const float least = 0.01;
-    float cosine = -ex_dot(n, d);
-    return cosine < least ? ex_normalize(n - d * (least - cosine)) : n;
-}
-
 // The same in scenes with trees, where kernels of their own find what stands in the way.
 void send_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m, surface s, vec3 n,
                  vec3 lit_by, gpu_ray ray, bool lit, inout film_sum sum)
@@ -141,7 +130,7 @@ void send_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m
             if (reaches && !shadowed)
                 note_arrival(pixel, vec3(1.0), value);
         }
-        send_light(gpu_shadow_ray(origin, pixel, value, first + l),
+        send_light(gpu_shadow_ray(origin, pixel, value, first + l), no_way,
                    reaches && shadowed && !has_inspect);
         l++;
         if (l >= count)
@@ -155,24 +144,11 @@ void main()
     bool wanted = index < counters.hits;
     gpu_hit hit = load_hit(wanted ? index : 0u);
     gpu_ray ray = load_ray(hit.ray);
-    surface s = surface_at(hit, ray.origin, ray.direction);
-    uvec3 ids = load_object_ids(s.object);
-    gpu_material m = load_material(ids.x);
-    vec3 color = m.color0;
-    if (has_patterns)
-        color = pattern_color(m, s.object, s.position, s.normal);
-    bool absent = false;
-    if (has_textures) {
-        vec4 texel = material_texel(m, s.uv);
-        color = color * texel.xyz;
-        absent = has_cutouts && is_hole(m.pattern, m.inv_size, texel.w);
-    }
-    vec3 n = ex_dot(ray.direction, s.normal) < 0.0 ? s.normal : -s.normal;
-    vec3 lit_by = n;
-    if (has_corners) {
-        color = color * s.tint;
-        lit_by = facing(ex_dot(ray.direction, s.normal) < 0.0 ? s.shading : -s.shading, ray.direction);
-    }
+    shading at = shading_at(hit, ray);
+    surface s = at.at;
+    uvec3 ids = at.ids;
+    gpu_material m = at.material;
+    vec3 color = at.color, n = at.n, lit_by = at.lit_by;
 
     vec3 fog;
     vec3 weight = weight_after(ray, hit.t, fog);
@@ -186,7 +162,7 @@ void main()
         }
     }
     if (has_scatter) {
-        bool visible = scatter(ray, weight, s, n, lit_by, ids, m, absent, first_lights);
+        bool visible = scatter(ray, weight, s, n, lit_by, ids, m, at.absent, first_lights);
         lit = lit && visible;
     }
     film_sum sum = film_zero();
@@ -195,7 +171,7 @@ void main()
     vec3 emission = vec3(m.emission_red, m.emission_green, m.emission_blue);
     vec3 own = weight * (m.ambient * color + emission);
     if (has_inspect) {
-        if (first_lights && !absent)
+        if (first_lights && !at.absent)
             film_accumulate(sum, inspected_hit(ray, hit.t, s.object, lit_by));
         lit = lit && counts_rays();
     } else if (lit && first_lights) {

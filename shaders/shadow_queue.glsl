@@ -16,15 +16,25 @@ uvec4 shadow_row(uint row)
     return value;
 }
 
+const uint shadow_rows = has_paths ? 3u : 2u;
+
 gpu_shadow_ray load_shadow_ray(uint index)
 {
-    uvec4 a = shadow_row(2u * index), b = shadow_row(2u * index + 1u);
+    uvec4 a = shadow_row(shadow_rows * index), b = shadow_row(shadow_rows * index + 1u);
     return gpu_shadow_ray(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w);
 }
 
+gpu_shadow_way load_shadow_way(uint index)
+{
+    uvec4 a = shadow_row(shadow_rows * index + 2u);
+    return gpu_shadow_way(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w));
+}
+
+const gpu_shadow_way no_way = gpu_shadow_way(vec3(0.0), 0.0);
+
 // Puts the ray into its light's segment if it is wanted. All invocations of a batch must send light
-// of the same source together.
-void send_light(gpu_shadow_ray ray, bool wanted)
+// of the same source together. `way` is for paths alone.
+void send_light(gpu_shadow_ray ray, gpu_shadow_way way, bool wanted)
 {
     uint segment = ray.light & uint(LR_SHADOW_LIGHTS - 1), slot;
     uint begin = segment * work.shadow_room;
@@ -34,9 +44,11 @@ void send_light(gpu_shadow_ray ray, bool wanted)
         atomicAdd(cells[segment * LR_CELLS + cell_of(ray.origin)], 1u);
     // The host checks that no segment ran over.
     if (wanted && slot < work.shadow_room) {
-        uint at = 2u * (begin + slot);
+        uint at = shadow_rows * (begin + slot);
         shadow_rays_queue[at] = pack_row(ray.origin, ray.pixel);
         shadow_rays_queue[at + 1u] = pack_row(ray.value, ray.light);
+        if (has_paths)
+            shadow_rays_queue[at + 2u] = pack_row(way.direction, floatBitsToUint(way.t_max));
     }
 }
 

@@ -151,7 +151,13 @@ void main()
     EACH_RAY
     {
         gpu_shadow_ray job = load_shadow_ray(shadow_index(k));
-        vec4 ray = shadow_ray(load_light(job.light), job.origin);
+        vec4 ray;
+        if (has_paths) {
+            gpu_shadow_way way = load_shadow_way(shadow_index(k));
+            ray = vec4(way.direction, way.t_max);
+        } else {
+            ray = shadow_ray(load_light(job.light), job.origin);
+        }
         ray_o[k] = job.origin;
         ray_d[k] = ray.xyz;
         ray_limit[k] = packet_index(k) < work.count ? ray.w : -1.0;

@@ -6,31 +6,16 @@
 #include "gpu_layout.h"
 #include "bindings.glsl"
 #include "air.glsl"
+#include "background.glsl"
 #include "batch.glsl"
 #include "film.glsl"
+#include "found.glsl"
 #include "inspect.glsl"
 #include "notes.glsl"
 #include "queue.glsl"
 #include "trace.glsl"
 
 layout(local_size_x = LR_GROUP_SIZE) in;
-
-vec3 background(vec3 d)
-{
-    float up = 0.5 + 0.5 * ex_dot(d, frame.background_up);
-    return ex_mix(frame.background_low, frame.background_high, clamp(up, 0.0, 1.0));
-}
-
-// What the kernels of trees found for a ray of this pass.
-nearest_hit load_found(uint i)
-{
-    uvec4 a;
-    if (texel_queues)
-        a = texelFetch(found_texels, int(i));
-    else
-        a = found_rows[i];
-    return nearest_hit(uintBitsToFloat(a.y), a.z, a.w);
-}
 
 void main()
 {

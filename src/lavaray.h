@@ -267,6 +267,13 @@ lr_status lr_picture_write(const lr_picture *picture, const char *path, const lr
 
 /* ---- Rendering ---------------------------------------------------------------------------- */
 
+/* How light is found. */
+typedef enum lr_integrator {
+    LR_INTEGRATOR_DEFAULT, /* as the scene says */
+    LR_INTEGRATOR_WHITTED, /* mirrors, glass and direct light: Whitted's ray trees, 1980 */
+    LR_INTEGRATOR_PATH,    /* all ways of light, by chance: Kajiya's paths, 1986 */
+} lr_integrator;
+
 typedef struct lr_render_options {
     uint32_t width, height; /* 0: as the scene says */
     uint32_t samples;       /* per pixel; 0: as the scene says */
@@ -275,6 +282,7 @@ typedef struct lr_render_options {
     uint32_t seed;
     bool has_seed;
     const char *camera; /* NULL: the scene's first */
+    lr_integrator integrator;
     struct {
         uint32_t x, y, width, height; /* of the picture; width 0: all of it */
     } crop;
@@ -293,6 +301,7 @@ typedef struct lr_render_options {
 
 typedef struct lr_render_stats {
     uint32_t width, height, samples, depth, seed;
+    lr_integrator integrator;
     struct {
         uint64_t traced, hit;
     } primary, reflected, refracted, shadow;

@@ -1,5 +1,14 @@
 #include "cli/picture.h"
 
+#include <string.h>
+
+static lr_integrator integrator_named(const char *name)
+{
+    if (!name)
+        return LR_INTEGRATOR_DEFAULT;
+    return strcmp(name, "path") == 0 ? LR_INTEGRATOR_PATH : LR_INTEGRATOR_WHITTED;
+}
+
 lr_render_options picture_options(const picture_values *values)
 {
     const picture_values *v = values;
@@ -12,5 +21,6 @@ lr_render_options picture_options(const picture_values *values)
         .seed = v->seed >= 0 ? (uint32_t)v->seed : 0,
         .has_seed = v->seed >= 0,
         .camera = v->camera,
+        .integrator = integrator_named(v->integrator),
     };
 }

@@ -11,7 +11,7 @@
 typedef struct picture_values {
     option_size size;
     int64_t samples, depth, seed; /* -1: not given */
-    const char *camera, *device;
+    const char *integrator, *camera, *device;
 } picture_values;
 
 #define PICTURE_DEFAULTS                                                                           \
@@ -52,6 +52,14 @@ typedef struct picture_values {
          .min = 0,                                                                                 \
          .max = UINT32_MAX,                                                                        \
          .help = "of the random numbers, 0 to 4294967295;\ndefault: the scene's"},                 \
+        {.name = "integrator",                                                                     \
+         .kind = OPTION_CHOICE,                                                                    \
+         .offset = offsetof(type, picture.integrator),                                             \
+         .value = "NAME",                                                                          \
+         .choices = "whitted|path",                                                                \
+         .help = "whitted: mirrors, glass and direct light; path: all\n"                           \
+                 "ways of light, by chance; default: the scene's",                                 \
+         .also = "renderer|method"},                                                               \
         {.name = "camera",                                                                         \
          .kind = OPTION_TEXT,                                                                      \
          .offset = offsetof(type, picture.camera),                                                 \

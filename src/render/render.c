@@ -90,6 +90,7 @@ lr_status lr_render(lr_device *device, const lr_scene *scene, const lr_render_op
         stats->samples = settings.samples;
         stats->depth = settings.depth;
         stats->seed = settings.seed;
+        stats->integrator = settings.integrator;
         lr_picture_hash(picture, stats->hash);
     } else {
         lr_picture_free(picture);

@@ -3,6 +3,9 @@
 
 #include <string.h>
 
+/* Of a path-traced picture that nobody asked a number for: it shows what it will be. */
+#define PATH_SAMPLES 64
+
 #define PIXELS_MAX (1u << 28)
 
 static lr_status choose_camera(const lr_scene *scene, const char *name, const lr_camera **camera,
@@ -35,16 +38,20 @@ lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_
     *s = (lr_settings){
         .width = options->width ? options->width : scene->image.width,
         .height = options->height ? options->height : scene->image.height,
-        .samples = options->samples ? options->samples : scene->image.samples,
         .depth = options->has_depth ? (uint32_t)options->depth : scene->image.depth,
         .seed = options->has_seed ? options->seed : scene->image.seed,
         .crop_x = options->crop.x,
         .crop_y = options->crop.y,
         .crop_width = options->crop.width,
         .crop_height = options->crop.height,
+        .integrator = options->integrator ? options->integrator
+                                          : (lr_integrator)(scene->image.integrator + 1),
         .leaf_size = options->leaf_size,
         .threads = options->threads,
     };
+    s->samples = options->samples ? options->samples : scene->image.samples;
+    if (!s->samples)
+        s->samples = s->integrator == LR_INTEGRATOR_PATH ? PATH_SAMPLES : 1;
     if (s->width > 32768 || s->height > 32768)
         return lr_fail(error, LR_ERROR_ARGUMENT, "the size %ux%u is over 32768 (--size)", s->width,
                        s->height);

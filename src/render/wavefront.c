@@ -23,6 +23,25 @@ static void record_shade(lr_wavefront *w, struct gpu_work *work)
     } while (work->light < w->scene->light_count);
 }
 
+/* Traces the rays and shades what they hit. */
+static void record_tree(lr_wavefront *w, struct gpu_work *work)
+{
+    lr_commands_dispatch(w->device, &w->layout, w->trace, w->set, work,
+                         groups_for(work->count, LR_GROUP_SIZE), 1, 1);
+    record_shade(w, work);
+}
+
+/* One bounce of paths. */
+static void record_paths(lr_wavefront *w, struct gpu_work *work)
+{
+    work->shadow_room = w->shadow_room;
+    memcpy(work->shadow_first, w->shadow_counts, sizeof work->shadow_first);
+    work->sorted = w->shadows_sorted;
+    work->light_count = w->scene->light_count;
+    lr_commands_dispatch(w->device, &w->layout, w->path, w->set, work,
+                         groups_for(work->count, LR_GROUP_SIZE), 1, 1);
+}
+
 static uint32_t shade_dispatches(const lr_wavefront *w)
 {
     return at_least(groups_for(w->scene->light_count, w->lights_at_once), 1);
@@ -41,7 +60,8 @@ static void add_shadow_counts(lr_render_stats *s, const struct gpu_counters *c)
 static lr_status take_counts(lr_wavefront *w, uint32_t rays, uint32_t generation, lr_error *error)
 {
     const struct gpu_counters *c = w->counters_host.mapped;
-    uint32_t made = generation == 0 ? rays : 0, shaded = c->hits * shade_dispatches(w);
+    uint32_t made = generation == 0 ? rays : 0;
+    uint32_t shaded = has_paths(w) ? 0 : c->hits * shade_dispatches(w);
     uint32_t found = has_trees(w) ? rays : 0;
     bool fits = true;
     for (uint32_t i = 0; i < LR_SHADOW_LIGHTS; i++) {
@@ -147,7 +167,7 @@ static lr_status drain_shadows(lr_wavefront *w, lr_error *error)
  */
 static lr_status make_shadow_room(lr_wavefront *w, uint32_t rays, bool sorted, lr_error *error)
 {
-    uint32_t most = rays * groups_for(w->scene->light_count, LR_SHADOW_LIGHTS);
+    uint32_t most = rays * groups_for(lights_asked(w), LR_SHADOW_LIGHTS);
     bool fits = w->shadows_sorted == sorted;
     for (uint32_t i = 0; i < LR_SHADOW_LIGHTS; i++)
         fits = fits && w->shadow_counts[i] + most <= w->shadow_room;
@@ -182,9 +202,10 @@ static lr_status run_pass(lr_wavefront *w, uint32_t generation, struct gpu_work 
                              groups_for(rays, LR_GROUP_SIZE * w->rays_at_once), 1, 1);
         lr_commands_barrier(w->device);
     }
-    lr_commands_dispatch(w->device, &w->layout, w->trace, w->set, work,
-                         groups_for(rays, LR_GROUP_SIZE), 1, 1);
-    record_shade(w, work);
+    if (has_paths(w))
+        record_paths(w, work);
+    else
+        record_tree(w, work);
     status = finish_pass(w, error);
     if (!status)
         status = take_counts(w, rays, generation, error);

@@ -8,8 +8,9 @@
 #include "gpu/program.h"
 #include "render/pack.h"
 
-/* A generation for every bounce and every hidden surface that a ray may pass. */
-#define LR_GENERATIONS_MAX 322
+/* A generation for every bounce, every hidden surface that a ray may pass, and the last ray of a
+ * path. */
+#define LR_GENERATIONS_MAX 323
 
 typedef struct lr_queue {
     lr_buffer *rays; /* NULL while it is empty */
@@ -22,10 +23,10 @@ typedef struct lr_wavefront {
     lr_layout layout;
     union {
         struct {
-            VkPipeline camera, trace, shade;
+            VkPipeline camera, trace, shade, path;
             VkPipeline nearest, shadow, sort_scan, sort_place; /* in scenes with trees */
         };
-        VkPipeline programs[7]; /* all of them */
+        VkPipeline programs[8]; /* all of them */
     };
     VkDescriptorSet camera_set, set;
     union {

@@ -30,6 +30,18 @@ static inline bool explains(const lr_wavefront *w)
     return w->scene->constants[LR_SPEC_EXPLAIN];
 }
 
+/* Paths, in one kernel: LR_SPEC_PATH. */
+static inline bool has_paths(const lr_wavefront *w)
+{
+    return w->scene->constants[LR_SPEC_PATH];
+}
+
+/* Light sources that a hit asks. */
+static inline uint32_t lights_asked(const lr_wavefront *w)
+{
+    return has_paths(w) ? 1 : w->scene->light_count;
+}
+
 /* Opens the queues of a pass over a generation and points the sets at them. */
 lr_status wavefront_open_generation(lr_wavefront *w, uint32_t generation, lr_error *error);
 void wavefront_close_if_empty(lr_wavefront *w, lr_queue *queue);

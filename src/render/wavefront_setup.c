@@ -7,6 +7,7 @@
 #include "gpu/commands.h"
 #include "nearest_packet.spv.h"
 #include "nearest_ray.spv.h"
+#include "path.spv.h"
 #include "shade.spv.h"
 #include "shadow_packet.spv.h"
 #include "shadow_ray.spv.h"
@@ -36,7 +37,7 @@
 /* How the work is cut up: passes that stay short whatever the number of primitives and lights. */
 static void plan(lr_wavefront *w, const lr_render_options *options)
 {
-    uint32_t primitives = w->scene->tests_per_ray + 8, lights = w->scene->light_count;
+    uint32_t primitives = w->scene->tests_per_ray + 8, lights = lights_asked(w);
     uint32_t fitting = TESTS_PER_PASS / primitives / (has_trees(w) ? 1 : 1 + lights);
     bool software = w->device->info.software;
     uint32_t chunk = at_most(fitting, software ? CHUNK_SOFTWARE : CHUNK_GPU);
@@ -68,7 +69,8 @@ static void plan(lr_wavefront *w, const lr_render_options *options)
 /* Bytes of a queue that has room for the children of one chunk. */
 static VkDeviceSize queue_size(const lr_wavefront *w)
 {
-    return 2 * sizeof(struct gpu_ray) * (VkDeviceSize)w->chunk_rays;
+    size_t ray = sizeof(struct gpu_ray) + (has_paths(w) ? sizeof(struct gpu_path) : 0);
+    return (has_paths(w) ? 1 : 2) * ray * (VkDeviceSize)w->chunk_rays;
 }
 
 static VkDeviceSize found_size(const lr_wavefront *w)
@@ -78,8 +80,9 @@ static VkDeviceSize found_size(const lr_wavefront *w)
 
 static VkDeviceSize shadow_size(const lr_wavefront *w)
 {
-    VkDeviceSize segment = sizeof(struct gpu_shadow_ray) * (VkDeviceSize)w->shadow_room;
-    return has_trees(w) ? LR_SHADOW_LIGHTS * segment : 16;
+    size_t ray = sizeof(struct gpu_shadow_ray) + (has_paths(w) ? sizeof(struct gpu_shadow_way) : 0);
+    uint32_t segments = has_paths(w) ? 1 : LR_SHADOW_LIGHTS;
+    return has_trees(w) ? segments * ray * (VkDeviceSize)w->shadow_room : 16;
 }
 
 /* What explains does not sort, and has its notes there. */
@@ -99,7 +102,8 @@ static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *er
     constants[LR_SPEC_SHUFFLE] = w->device->shuffle_size >= LR_BATCH;
     /* Only the shadow rays of children are sorted. */
     bool trees = has_trees(w), packets = w->rays_at_once > 1;
-    bool sorts = trees && !explains(w) && w->scene->constants[LR_SPEC_SCATTER];
+    bool paths = has_paths(w);
+    bool sorts = trees && !explains(w) && (paths || w->scene->constants[LR_SPEC_SCATTER]);
     const struct {
         const uint32_t *words;
         size_t size;
@@ -107,8 +111,9 @@ static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *er
         bool needed;
     } kernels[] = {
         {camera_spv, sizeof camera_spv, &w->camera, true},
-        {trace_spv, sizeof trace_spv, &w->trace, true},
-        {shade_spv, sizeof shade_spv, &w->shade, true},
+        {trace_spv, sizeof trace_spv, &w->trace, !paths},
+        {shade_spv, sizeof shade_spv, &w->shade, !paths},
+        {path_spv, sizeof path_spv, &w->path, paths},
         {sort_scan_spv, sizeof sort_scan_spv, &w->sort_scan, sorts},
         {sort_place_spv, sizeof sort_place_spv, &w->sort_place, sorts},
         {nearest_packet_spv, sizeof nearest_packet_spv, &w->nearest, trees && packets},
@@ -177,7 +182,7 @@ static lr_status create_layout(lr_wavefront *w, lr_error *error)
 }
 
 static_assert(offsetof(lr_wavefront, sort_place) + sizeof(VkPipeline) ==
-                  offsetof(lr_wavefront, programs) + sizeof(VkPipeline[7]),
+                  offsetof(lr_wavefront, programs) + sizeof(VkPipeline[8]),
               "programs[] holds all programs");
 static_assert(offsetof(lr_wavefront, order) + sizeof(lr_buffer) ==
                   offsetof(lr_wavefront, buffers) + sizeof(lr_buffer[12]),
@@ -253,7 +258,7 @@ static lr_status create_sets(lr_wavefront *w, lr_error *error)
 lr_status wavefront_open_generation(lr_wavefront *w, uint32_t generation, lr_error *error)
 {
     lr_queue *queue = &w->queues[generation], *next = queue + 1;
-    bool children = w->scene->constants[LR_SPEC_SCATTER];
+    bool children = has_paths(w) || w->scene->constants[LR_SPEC_SCATTER];
     lr_status status = open_queue(w, queue, error);
     if (!status && children)
         status = open_queue(w, next, error);

@@ -75,6 +75,7 @@ static void put_surroundings(hasher *h, const lr_scene *scene)
     put_count(h, scene->image.seed);
     put_number(h, scene->image.min_weight);
     put_number(h, scene->image.exposure);
+    put_count(h, scene->image.integrator);
     put_count(h, scene->image.tone);
     put_number(h, scene->image.white);
     put_vector(h, scene->ambient);

@@ -38,6 +38,7 @@ static const lr_field camera_fields[] = {
 const lr_record lr_camera_record =
     RECORD("camera", "Where the picture is taken from.", camera_fields, 0);
 
+static const char *const integrators[] = {"whitted", "path", NULL};
 static const char *const tones[] = {"none", "reinhard", "aces", "agx", NULL};
 
 static const lr_field image_fields[] = {
@@ -45,8 +46,9 @@ static const lr_field image_fields[] = {
      .doc = "Width in pixels."},
     {"height", LR_FIELD_INTEGER, 0, RANGE(1, 32768), DEFAULT(480), MEMBER(lr_scene, image.height),
      .doc = "Height in pixels."},
-    {"samples", LR_FIELD_INTEGER, 0, RANGE(1, 65536), DEFAULT(1), MEMBER(lr_scene, image.samples),
-     .doc = "Rays through each pixel; more give smoother edges."},
+    {"samples", LR_FIELD_INTEGER, LR_DERIVED, RANGE(1, 65536), MEMBER(lr_scene, image.samples),
+     .derived = "1; with `integrator: path` 64",
+     .doc = "Rays through each pixel; more give smoother edges and, of paths, less noise."},
     {"depth", LR_FIELD_INTEGER, 0, RANGE(0, 64), DEFAULT(6), MEMBER(lr_scene, image.depth),
      .doc = "Bounces: how often a ray may be reflected or refracted; 0 is only what the eye sees."},
     {"seed", LR_FIELD_INTEGER, 0, RANGE(0, 4294967295.0), DEFAULT(0), MEMBER(lr_scene, image.seed),
@@ -55,6 +57,9 @@ static const lr_field image_fields[] = {
      .doc = "Rays whose weight in the pixel is below this are not traced."},
     {"exposure", LR_FIELD_NUMBER, 0, RANGE(-64, 64), DEFAULT(0), MEMBER(lr_scene, image.exposure),
      .doc = "Stops: the picture is written 2^exposure times as bright."},
+    {"integrator", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_scene, image.integrator),
+     .choices = integrators,
+     .doc = "How light is found: mirrors, glass and direct light, or all of its ways by chance."},
     {"tone", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_scene, image.tone), .choices = tones,
      .doc = "How light becomes a colour of PPM and PNG files; none clips it at 1."},
     {"white", LR_FIELD_NUMBER, LR_DERIVED, RANGE(LR_WHITE_MIN, LR_WHITE_MAX),

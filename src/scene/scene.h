@@ -184,11 +184,13 @@ struct lr_scene {
     lr_color fog_color;
     double fog_density; /* per metre; 0: no fog */
     struct {
-        uint32_t width, height, samples; /* 1..32768, 1..32768, 1..65536 */
+        uint32_t width, height, samples; /* 1..32768, 1..32768, 0..65536; 0: as the
+                                            integrator needs */
         uint32_t depth;                  /* 0..64 */
         uint32_t seed;
         double min_weight; /* 0..1 */
         double exposure;   /* stops, -64..64 */
+        enum { LR_SCENE_WHITTED, LR_SCENE_PATH } integrator;
         lr_tone tone;
         double white; /* kelvin, LR_WHITE_MIN..LR_WHITE_MAX; 0: off */
     } image;

@@ -79,7 +79,7 @@ def instance(kind, material, inward):
 
 whole(32, 16, 1, 4, 0)
 real(0, 0)
-whole(0)
+whole(0, 0)
 real(0, 0, 0, 0, 0.5, 0.25, 0.125, 0.5, 0.25, 0.125, 0, 0, 1, 0, 0, 0, 0)
 whole(1)
 real(0, -5, 2, 0, 0, 0, 0, 0, 1, 45)
