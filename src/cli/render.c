@@ -1,5 +1,6 @@
 #include "cli/cli.h"
 #include "cli/load.h"
+#include "cli/look.h"
 #include "cli/output.h"
 #include "cli/picture.h"
 #include "cli/progress.h"
@@ -20,6 +21,7 @@ typedef struct values {
     option_rectangle crop;
     int64_t tile, chunk;
     load_values load;
+    look_values look;
     bool half, storage_loads, quiet, verbose;
 } values;
 
@@ -70,6 +72,7 @@ static const option options[] = {
      .min = -64,
      .max = 64,
      .help = "stops, -64 to 64; 1 is twice as bright;\ndefault: the scene's"},
+    LOOK_OPTIONS(values),
     {.name = "crop",
      .kind = OPTION_RECTANGLE,
      AT(crop),
@@ -160,6 +163,9 @@ static int check_values(const command *self, const values *v, const char *scene,
     if (floats && v->transfer && strcmp(v->transfer, "srgb") == 0) {
         return wrong_usage(self, "--transfer srgb is not for PFM and EXR, which are always linear");
     }
+    if (check_look(self, &v->look, encoding->format) != EXIT_FINE) {
+        return EXIT_USAGE;
+    }
     if (v->half && encoding->format != LR_FORMAT_EXR) {
         return wrong_usage(self, "--half is for EXR alone");
     }
@@ -226,6 +232,7 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
     if (encoding->exposure != 0) {
         fprintf(out, ", exposure %.7g", (double)encoding->exposure);
     }
+    describe_look(encoding, out);
     if (encoding->format == LR_FORMAT_PNG && encoding->transfer == LR_TRANSFER_LINEAR) {
         fputs(", linear", out);
     }
@@ -333,6 +340,9 @@ static int run(const command *self, int argc, char **argv)
     encoding.transfer =
         v.transfer && strcmp(v.transfer, "linear") == 0 ? LR_TRANSFER_LINEAR : LR_TRANSFER_SRGB;
     encoding.half = v.half;
+    choose_look(&v.look, &scene_info, &encoding);
+    record.tone = lr_tone_name(encoding.tone);
+    record.white = encoding.white;
 
     progress_phase(&p, "opening device");
     double device_start = seconds_now();

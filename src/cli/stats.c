@@ -131,11 +131,14 @@ static json_t *record_json(const render_record *r)
                   "api_version", format_version(r->device.api_version).text, "software",
                   r->device.software, "exact", r->exact);
     json_t *picture =
-        json_pack("{s:i, s:i, s:[i,i], s:s, s:i, s:i, s:I, s:f, s:s}", "width", (int)r->width,
+        json_pack("{s:i, s:i, s:[i,i], s:s, s:i, s:i, s:I, s:f, s:s, s:s}", "width", (int)r->width,
                   "height", (int)r->height, "full_size", (int)s->width, (int)s->height,
                   "integrator", s->integrator == LR_INTEGRATOR_PATH ? "path" : "whitted", "samples",
                   (int)s->samples, "depth", (int)s->depth, "seed", (json_int_t)s->seed, "exposure",
-                  r->exposure, "sha256", s->hash);
+                  r->exposure, "tone", r->tone, "sha256", s->hash);
+    if (r->white != 0) {
+        json_object_set_new(picture, "white", json_real(r->white));
+    }
     json_t *rays = json_pack(
         "{s:o, s:o, s:o, s:o, s:o, s:I}", "primary", rays_json(s->primary.traced, s->primary.hit),
         "reflected", rays_json(s->reflected.traced, s->reflected.hit), "refracted",

@@ -77,6 +77,8 @@ static void put_surroundings(hasher *h, const lr_scene *scene)
     put_number(h, scene->image.exposure);
     put_count(h, scene->image.integrator);
     put_count(h, scene->image.filter);
+    put_count(h, scene->image.tone);
+    put_number(h, scene->image.white);
     put_vector(h, scene->ambient);
     put_vector(h, scene->background[0]);
     put_vector(h, scene->background[1]);

@@ -57,6 +57,8 @@ const lr_record lr_camera_record =
 
 static const char *const filters[] = {"box", "tent", "blackman-harris", NULL};
 static const char *const integrators[] = {"whitted", "path", NULL};
+static const char *const tones[] = {"none", "reinhard", "aces", "agx", NULL};
+
 static const lr_field image_fields[] = {
     {"width", LR_FIELD_INTEGER, 0, RANGE(1, 32768), DEFAULT(640), MEMBER(lr_scene, image.width),
      .doc = "Width in pixels."},
@@ -78,6 +80,11 @@ static const lr_field image_fields[] = {
      .doc = "How light is found: mirrors, glass and direct light, or all of its ways by chance."},
     {"filter", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_scene, image.filter), .choices = filters,
      .doc = "How samples weigh by their distance from the middle of the pixel."},
+    {"tone", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_scene, image.tone), .choices = tones,
+     .doc = "How light becomes a colour of PPM and PNG files; none clips it at 1."},
+    {"white", LR_FIELD_NUMBER, LR_DERIVED, RANGE(LR_WHITE_MIN, LR_WHITE_MAX),
+     MEMBER(lr_scene, image.white), .derived = "off",
+     .doc = "White balance: light of this colour temperature, in kelvin, becomes white."},
 };
 const lr_record lr_image_record = RECORD("image", "The picture to be made.", image_fields, 0);
 

@@ -205,6 +205,8 @@ struct lr_scene {
         double exposure;   /* stops, -64..64 */
         enum { LR_SCENE_WHITTED, LR_SCENE_PATH } integrator;
         enum { LR_SCENE_BOX, LR_SCENE_TENT, LR_SCENE_BLACKMAN_HARRIS } filter;
+        lr_tone tone;
+        double white; /* kelvin, LR_WHITE_MIN..LR_WHITE_MAX; 0: off */
     } image;
 };
 

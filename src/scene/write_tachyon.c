@@ -78,6 +78,10 @@ static void put_surroundings(lr_writer *writer)
         lr_writer_cannot(writer, "samples a pixel are left out, -aasamples asks Tachyon for some");
     if (scene->image.exposure != 0)
         lr_writer_cannot(writer, "the exposure is left out");
+    if (scene->image.tone != LR_TONE_NONE)
+        lr_writer_cannot(writer, "the tone map is left out");
+    if (scene->image.white != 0)
+        lr_writer_cannot(writer, "the white balance is left out");
 }
 
 static void put_attenuation(lr_writer *writer, double falloff)
