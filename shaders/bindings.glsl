@@ -39,6 +39,7 @@ layout(constant_id = LR_SPEC_ONE_SIDED) const bool has_one_sided = true;
 layout(constant_id = LR_SPEC_CORNERS) const bool has_corners = true;
 layout(constant_id = LR_SPEC_INSPECT) const bool has_inspect = true;
 layout(constant_id = LR_SPEC_EXPLAIN) const bool explains = false;
+layout(constant_id = LR_SPEC_FEW) const bool has_few = true;
 layout(constant_id = LR_SPEC_PATH) const bool has_paths = true;
 layout(constant_id = LR_SPEC_CAMERA) const bool has_lens = true;
 

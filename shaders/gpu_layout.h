@@ -82,8 +82,9 @@ typedef struct vec4 {
 #define LR_SPEC_INSPECT 33 /* the film gets frame.inspect instead of light */
 #define LR_SPEC_EXPLAIN 34 /* every ray and light is noted: gpu_notes */
 #define LR_SPEC_PATH 35    /* paths instead of ray trees: path.comp */
-#define LR_SPEC_CAMERA 36  /* some camera is more than a pinhole, or the filter than a box */
-#define LR_SPEC_COUNT 37
+#define LR_SPEC_FEW 36     /* ... whose rays are to test all primitives */
+#define LR_SPEC_CAMERA 37  /* some camera is more than a pinhole, or the filter than a box */
+#define LR_SPEC_COUNT 38
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -460,6 +461,7 @@ struct gpu_work {
     uint film_first;      /* where the tile's first pixel is in the film, */
     uint film_pitch;      /* and how many pixels lie between it and the one below */
 };
+#define LR_SHADOW_THROUGH 4u /* light that no path finds otherwise comes through transparent objects */
 #define LR_SHADOW_LIGHTS 4 /* light l goes to segment l modulo this */
 
 /* ---- Queues ---- */
@@ -509,7 +511,7 @@ struct gpu_shadow_ray {
     vec3 origin; /* the point */
     uint pixel;  /* in kernels that explain, which have but one: the light's note */
     vec3 value;  /* what it adds to the pixel */
-    uint light;
+    uint light;  /* of a path: LR_SHADOW_THROUGH or 0 */
 };
 LR_ROWS(gpu_shadow_ray, 2)
 

@@ -36,12 +36,15 @@ gpu_sphere load_sphere(uint i)
     return sphere_of(scene_row(at), scene_row(at + 1u));
 }
 
+gpu_plane plane_of(uvec4 a, uvec4 b)
+{
+    return gpu_plane(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), b.x, b.y, b.z, b.w);
+}
+
 gpu_plane load_plane(uint i)
 {
     uint at = frame.planes.base + 2u * i;
-    vec4 a = scene_row_float(at);
-    uvec4 b = scene_row(at + 1u);
-    return gpu_plane(a.xyz, a.w, b.x, b.y, b.z, b.w);
+    return plane_of(scene_row(at), scene_row(at + 1u));
 }
 
 gpu_flat flat_of(uvec4 a, uvec4 b, uvec4 c, uvec4 d)
