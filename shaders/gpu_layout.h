@@ -83,8 +83,16 @@ typedef struct vec4 {
 #define LR_SPEC_EXPLAIN 34 /* every ray and light is noted: gpu_notes */
 #define LR_SPEC_PATH 35    /* paths instead of ray trees: path.comp */
 #define LR_SPEC_FEW 36     /* ... whose rays are to test all primitives */
-#define LR_SPEC_CAMERA 37  /* some camera is more than a pinhole, or the filter than a box */
-#define LR_SPEC_COUNT 38
+#define LR_SPEC_EMITTERS 37          /* paths have some light source to choose */
+#define LR_SPEC_DELTA_LIGHTS 38      /* ... from scene.lights; */
+#define LR_SPEC_SOFT_LIGHTS 39       /* some of these have an extent */
+#define LR_SPEC_FLAT_EMITTERS 40     /* flat surfaces that shine: */
+#define LR_SPEC_DISK_EMITTERS 41     /* some are disks, */
+#define LR_SPEC_TRIANGLE_EMITTERS 42 /* or triangles */
+#define LR_SPEC_SPHERE_EMITTERS 43
+#define LR_SPEC_EMITS_FRONT 44 /* some surface shines on one side alone */
+#define LR_SPEC_CAMERA 45 /* some camera is more than a pinhole, or the filter than a box */
+#define LR_SPEC_COUNT 46
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -289,6 +297,7 @@ LR_ROWS(gpu_medium, 1)
 #define LR_GPU_FRESNEL 1u
 #define LR_GPU_PHONG 2u
 #define LR_GPU_LIT 4u /* has ambient, diffuse, specular or emitted light to show */
+#define LR_GPU_FRONT_ONLY 8u /* shines to where its normal points, not to the other side */
 
 #define LR_MATERIAL_ROWS 9u
 
@@ -341,11 +350,62 @@ struct gpu_light {
     vec3 direction; /* unit, the way the light travels */
     float cos_angle;
     float cos_scale; /* 1 / (cos inner - cos angle) */
-    uint unused0;
-    uint unused1;
-    uint unused2;
+    float radius;    /* point, spot: of the ball that shines, for paths; 0: a point */
+    float spread;    /* directional: 1 - cos of half the angle that it fills, for paths */
+    uint unused;
 };
 LR_ROWS(gpu_light, 4)
+
+/* What a path's vertex may choose as its light source: one of the lights, a surface that shines or
+ * one facet of it. */
+#define LR_GPU_EMITTER_LIGHT 1u
+#define LR_GPU_EMITTER_RECTANGLE 2u
+#define LR_GPU_EMITTER_DISK 3u
+#define LR_GPU_EMITTER_TRIANGLE 4u
+#define LR_GPU_EMITTER_SPHERE 5u
+#define LR_GPU_EMITTER_KIND 7u
+#define LR_GPU_EMITTER_FRONT 8u /* shines to the side that the normal points to */
+#define LR_GPU_EMITTER_BACK 16u
+#define LR_EMITTER_ROWS 5u
+
+struct gpu_emitter {
+    vec3 origin; /* rectangle, triangle: a corner; disk, sphere: the centre */
+    uint kind;
+    vec3 e1;        /* rectangle, triangle: an edge from there; disk: a radius */
+    float inv_pdf; /* 1 / probability of the choice; of what is flat, times its area */
+    vec3 e2;
+    float pdf; /* as gpu_object_emitter */
+    vec3 radiance;
+    uint light; /* which of the lights */
+    vec3 normal;
+    float radius;
+};
+LR_ROWS(gpu_emitter, 5)
+
+/* The choices are a power of two, all equally likely; a number within each, below LR_CHOICE_STEPS /
+ * how many there are, tells which of its two emitters (rows) it is. So all probabilities are whole
+ * multiples of 1 / LR_CHOICE_STEPS. */
+#define LR_CHOICE_BITS 24
+#define LR_CHOICE_STEPS 16777216.0
+struct gpu_choice {
+    uint threshold; /* from here on it is the second */
+    uint first;
+    uint second;
+    uint unused;
+};
+LR_ROWS(gpu_choice, 1)
+
+/* Of every object, what the weight of its light is reckoned from where a path meets it. */
+#define LR_OBJECT_EMITTER_ROWS 2u
+struct gpu_object_emitter {
+    vec3 center; /* of a sphere */
+    uint kind;   /* 0: no one chooses it; all that is flat counts as a rectangle */
+    float pdf;   /* that a path chooses it; of what is flat, by its area */
+    float radius;
+    uint unused0;
+    uint unused1;
+};
+LR_ROWS(gpu_object_emitter, 2)
 
 /* All primitives are numbered, kind by kind. A list holds one kind: those from number `begin` up to
  * `end`; the record of number i is at row base + i * its rows (modulo 2^32). Bounded primitives
@@ -431,9 +491,13 @@ struct gpu_frame {
     uint inspect;
     vec3 inv_cell; /* 1 / its sides */
     float inspect_scale; /* the distance that is half-way between near and far */
+    uint choices;         /* rows: of the first gpu_choice, */
+    uint object_emitters; /* and gpu_object_emitter */
+    uint choice_shift;    /* LR_CHOICE_BITS - log2 of how many choices there are */
+    uint unused_emitters;
     gpu_lens lens;
 };
-LR_ROWS(gpu_frame, 28)
+LR_ROWS(gpu_frame, 29)
 #define LR_GPU_INSPECT_NORMAL 1u
 #define LR_GPU_INSPECT_DEPTH 2u
 #define LR_GPU_INSPECT_OBJECT 3u

@@ -108,7 +108,7 @@ void main()
     bool solid_there = hit && !sides.hidden;
 
     // The light that is there.
-    vec3 emission = vec3(m.emission_red, m.emission_green, m.emission_blue);
+    vec3 emission = emission_of(m, ray.direction, s.normal);
     vec3 light_from = ray.origin - ray.direction * path.distance;
     float pdf = emitter_pdf(s.object, light_from, ray.direction, path.distance + met.t, s.normal);
     vec3 found = solid_there ? emission : vec3(0.0);

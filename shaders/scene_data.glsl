@@ -126,8 +126,8 @@ gpu_light load_light(uint index)
     uint at = frame.lights + 4u * index;
     vec4 a = scene_row_float(at), b = scene_row_float(at + 1u), c = scene_row_float(at + 2u);
     uvec4 d = scene_row(at + 3u);
-    return gpu_light(a.xyz, a.w, b.xyz, floatBitsToUint(b.w), c.xyz, c.w, uintBitsToFloat(d.x), d.y,
-                     d.z, d.w);
+    return gpu_light(a.xyz, a.w, b.xyz, floatBitsToUint(b.w), c.xyz, c.w, uintBitsToFloat(d.x),
+                     uintBitsToFloat(d.y), uintBitsToFloat(d.z), d.w);
 }
 
 #endif

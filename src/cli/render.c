@@ -1,6 +1,7 @@
 #include "cli/cli.h"
 #include "cli/frames.h"
 #include "cli/load.h"
+#include "cli/look.h"
 #include "cli/output.h"
 #include "cli/picture.h"
 #include "cli/progress.h"
@@ -22,6 +23,7 @@ typedef struct values {
     option_rectangle crop;
     int64_t tile, chunk;
     load_values load;
+    look_values look;
     bool half, storage_loads, quiet, verbose;
 } values;
 
@@ -72,6 +74,7 @@ static const option options[] = {
      .min = -64,
      .max = 64,
      .help = "stops, -64 to 64; 1 is twice as bright;\ndefault: the scene's"},
+    LOOK_OPTIONS(values),
     {.name = "crop",
      .kind = OPTION_RECTANGLE,
      AT(crop),
@@ -189,6 +192,9 @@ static int check_values(const command *self, const values *v, const char *scene,
     if (v->frames && to_stdout && floats) {
         return wrong_usage(self, "frames go to standard output as PPM or PNG");
     }
+    if (check_look(self, &v->look, encoding->format) != EXIT_FINE) {
+        return EXIT_USAGE;
+    }
     if (v->half && encoding->format != LR_FORMAT_EXR) {
         return wrong_usage(self, "--half is for EXR alone");
     }
@@ -203,7 +209,8 @@ static int check_values(const command *self, const values *v, const char *scene,
         return wrong_usage(self, "the picture and the statistics have the same name");
     }
     char path[PATH_MAX];
-    if (v->frames && !frames_path(v->output, range.first, path, sizeof path)) {
+    if (v->frames && !(frames_path(v->output, range.last, path, sizeof path) &&
+                       frames_path(v->output, range.first, path, sizeof path))) {
         print_error("%.100s: the path is too long", v->output);
         return EXIT_FILE;
     }
@@ -247,9 +254,10 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
         text[0] = '\0';
         return;
     }
-    fprintf(out, "%ux%u, %u sample%s, depth %u, seed %u", (unsigned)s->width, (unsigned)s->height,
-            (unsigned)s->samples, s->samples == 1 ? "" : "s", (unsigned)s->depth,
-            (unsigned)s->seed);
+    fprintf(out, "%s%ux%u, %u sample%s, depth %u, seed %u",
+            s->integrator == LR_INTEGRATOR_PATH ? "paths, " : "", (unsigned)s->width,
+            (unsigned)s->height, (unsigned)s->samples, s->samples == 1 ? "" : "s",
+            (unsigned)s->depth, (unsigned)s->seed);
     if (v->crop.width) {
         fprintf(out, ", crop %u,%u,%u,%u", (unsigned)v->crop.x, (unsigned)v->crop.y,
                 (unsigned)v->crop.width, (unsigned)v->crop.height);
@@ -266,6 +274,7 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
     if (encoding->exposure != 0) {
         fprintf(out, ", exposure %.7g", (double)encoding->exposure);
     }
+    describe_look(encoding, out);
     if (encoding->format == LR_FORMAT_PNG && encoding->transfer == LR_TRANSFER_LINEAR) {
         fputs(", linear", out);
     }
@@ -387,6 +396,9 @@ static int render_picture(job *j, double start, lr_scene **scene)
     record.exposure = isnan(v->exposure) ? (double)scene_info.exposure : v->exposure;
     lr_encoding encoding = j->encoding;
     encoding.exposure = (float)record.exposure;
+    choose_look(&v->look, &scene_info, &encoding);
+    record.tone = lr_tone_name(encoding.tone);
+    record.white = encoding.white;
     code = j->device ? EXIT_FINE : open_device(j);
     if (code != EXIT_FINE) {
         return code;
@@ -459,11 +471,11 @@ const command command_render = {
                "input), or a .gltf, .glb, .obj, .ply, .stl or .nff file. The picture depends on\n"
                "the scene and the flags alone, not on the device. Nothing is written when the\n"
                "render fails or is interrupted.",
-    .examples =
-        "  lavaray render scenes/showcase.yaml -o showcase.png\n"
-        "  lavaray render room.yaml -o room.exr --size 1920x1080 --spp 64 --device gpu\n"
-        "  lavaray render room.yaml -o - | pnmtopng > room.png\n"
-        "  lavaray render turn.yaml --frames 0-47 -o - | ffmpeg -f image2pipe -framerate 24 -i - turn.mp4",
+    .examples = "  lavaray render scenes/showcase.yaml -o showcase.png\n"
+                "  lavaray render room.yaml -o room.exr --size 1920x1080 --spp 64 --device gpu\n"
+                "  lavaray render room.yaml -o - | pnmtopng > room.png\n"
+                "  lavaray render turn.yaml --frames 0-47 -o - | ffmpeg -f image2pipe -framerate "
+                "24 -i - turn.mp4",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_operands = 1,

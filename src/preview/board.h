@@ -18,8 +18,9 @@ typedef struct lr_wish {
     lr_filter filter; /* that of the options */
     double exposure;
     lr_inspect inspect;
-    uint64_t picture; /* grows whenever another picture is wished for: camera, depth, ... */
-    uint64_t look;    /* ... or the same to be shown in another way */
+    lr_integrator integrator; /* of what is shown as light */
+    uint64_t picture;         /* grows whenever another picture is wished for: camera, depth, ... */
+    uint64_t look;            /* ... or the same to be shown in another way */
 } lr_wish;
 
 /* Pixels to lay over the picture; see lr_display_set_overlay. */

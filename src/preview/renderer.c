@@ -160,7 +160,7 @@ static void tell(lr_renderer *r)
         .samples_done = p->finished ? p->settings.samples : p->sweep.first_sample,
         .samples = p->settings.samples,
         .rays = (double)(s->primary.traced + s->reflected.traced + s->refracted.traced +
-                         s->shadow.traced),
+                         s->bounced.traced + s->shadow.traced),
         .seconds = s->trace_seconds,
         .picture = r->started,
     };

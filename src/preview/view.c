@@ -158,13 +158,20 @@ static void free_cameras(lr_view *v)
     v->camera_count = 0;
 }
 
+void lr_view_wish_samples(lr_view *view)
+{
+    uint32_t given = view->options->render.samples;
+    given = given ? given : view->file.samples;
+    view->wish.samples = given ? given : lr_default_samples(view->wish.integrator);
+}
+
 /* Follows what the file says where it says something else than before, and else keeps what hands
  * have made of it. */
 static void adopt_settings(lr_view *v, const lr_news *news)
 {
     const lr_render_options *given = &v->options->render;
-    if (!given->samples && news->samples != v->file.samples)
-        v->wish.samples = news->samples;
+    bool samples = news->samples != v->file.samples;
+    bool integrator = news->integrator != v->file.integrator;
     if (!given->has_depth && news->depth != v->file.depth)
         v->wish.depth = news->depth;
     if (!given->has_seed && news->seed != v->file.seed)
@@ -172,6 +179,13 @@ static void adopt_settings(lr_view *v, const lr_news *news)
     if (!v->options->has_exposure && news->exposure != v->file.exposure)
         v->wish.exposure = news->exposure;
     v->file.samples = news->samples;
+    v->file.integrator = news->integrator;
+    if (!given->integrator && integrator) {
+        v->wish.integrator = news->integrator;
+        lr_view_build(v);
+    }
+    if (samples || integrator)
+        lr_view_wish_samples(v);
     v->file.depth = news->depth;
     v->file.seed = news->seed;
     v->file.exposure = news->exposure;
@@ -382,6 +396,7 @@ static lr_status first_wish(lr_view *v, const lr_scene *scene, lr_error *error)
         .samples = settings.samples,
         .depth = settings.depth,
         .seed = settings.seed,
+        .integrator = settings.integrator,
         .filter = settings.filter,
         .exposure = v->options->has_exposure ? v->options->exposure : scene->image.exposure,
         .picture = 1,
@@ -390,6 +405,7 @@ static lr_status first_wish(lr_view *v, const lr_scene *scene, lr_error *error)
     v->camera = (uint32_t)(settings.camera - scene->cameras);
     v->file.samples = scene->image.samples;
     v->file.depth = scene->image.depth;
+    v->file.integrator = (lr_integrator)(scene->image.integrator + 1);
     v->file.seed = scene->image.seed;
     v->file.exposure = scene->image.exposure;
     return LR_OK;

@@ -109,6 +109,10 @@ static void put_surroundings(lr_writer *writer)
         lr_writer_cannot(writer, "samples a pixel are left out, +A asks POV-Ray for some");
     if (scene->image.exposure != 0)
         lr_writer_cannot(writer, "the exposure is left out");
+    if (scene->image.tone != LR_TONE_NONE)
+        lr_writer_cannot(writer, "the tone map is left out");
+    if (scene->image.white != 0)
+        lr_writer_cannot(writer, "the white balance is left out");
 }
 
 static void put_light(lr_writer *writer, const lr_light *light)
@@ -147,8 +151,11 @@ static void put_lights(lr_writer *writer)
     lr_light added = lr_default_light(&scene->cameras[0]);
     if (scene->default_light)
         put_light(writer, &added);
-    for (uint32_t i = 0; i < scene->light_count; i++)
+    for (uint32_t i = 0; i < scene->light_count; i++) {
         put_light(writer, &scene->lights[i]);
+        if (lr_light_is_soft(&scene->lights[i]))
+            lr_writer_cannot(writer, "soft lights are written as points");
+    }
 }
 
 /* ---- Materials ----------------------------------------------------------------------------- */

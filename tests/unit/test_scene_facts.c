@@ -82,6 +82,8 @@ static void test_hash(void **state)
         "camera: {blade_rotation: 3}\nobjects: [{sphere: {}}]\n",
         "camera: {}\nimage: {filter: tent}\nobjects: [{sphere: {}}]\n",
         "camera: {}\nimage: {seed: 1}\nobjects: [{sphere: {}}]\n",
+        "camera: {}\nimage: {tone: agx}\nobjects: [{sphere: {}}]\n",
+        "camera: {}\nimage: {white: 3200}\nobjects: [{sphere: {}}]\n",
         "camera: {}\nlights: []\nobjects: [{sphere: {}}]\n",
         "camera: {}\nobjects: [{sphere: {radius: 1.0000000000000002}}]\n",
         "camera: {}\nobjects: [{sphere: {shadow: false}}]\n",
