@@ -167,6 +167,12 @@ typedef struct lr_camera {
     double focus;    /* distance along the view that is sharp; 0: that of `to` */
     uint32_t blades; /* corners of the aperture, 3..32; 0: round */
     double blade_rotation; /* of the corner that else points up, clockwise in the picture */
+    double shutter;        /* fraction of a frame that it is open */
+    bool moves;            /* meanwhile; `closing` is where to */
+    struct {
+        lr_vec3 from, to, up;
+        double fov, height;
+    } closing;
 } lr_camera;
 
 struct lr_part; /* part.h */
@@ -190,6 +196,7 @@ struct lr_scene {
     uint32_t note_count;
     lr_light *lights; /* empty only when the scene says `lights: []` */
     uint32_t light_count;
+    bool moves;         /* some value changes from frame to frame */
     bool default_light; /* no `lights` key: the renderer adds one that suits the camera */
     lr_color ambient;
     lr_color background[2]; /* looking along -up, looking along up; equal for a plain colour */
