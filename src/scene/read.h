@@ -100,6 +100,11 @@ uint32_t lr_read_material_use(lr_reader *reader, const lr_node *node);
 /* The material of objects that name none; UINT32_MAX when memory is out. */
 uint32_t lr_default_material(lr_reader *reader);
 
+/* The texture of the file that `node`, the text `file`, names. */
+bool lr_read_picture(lr_reader *reader, const lr_node *node, const char *file, lr_wrap wrap_u,
+                     lr_wrap wrap_v, uint32_t *texture);
+
+void lr_read_background(lr_reader *reader, const lr_node *node, const lr_field *field);
 void lr_read_lights(lr_reader *reader, const lr_node *node);
 void lr_read_objects(lr_reader *reader, const lr_node *node);
 

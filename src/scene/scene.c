@@ -91,20 +91,6 @@ static void read_cameras(lr_reader *reader, const lr_node *node, lr_vec3 up)
         read_camera(reader, lr_map_value(node, i), lr_map_key(node, i), up);
 }
 
-static void read_background(lr_reader *reader, const lr_node *node, const lr_field *field)
-{
-    lr_color *background = reader->scene->background;
-    lr_given given;
-    if (node->kind == LR_NODE_MAP && !lr_keys_of(reader, node)) {
-        lr_read_record(reader, node, node, &lr_background_record, reader->scene, &given);
-    } else if (node->kind == LR_NODE_EMPTY) {
-        char expected[LR_EXPECTED_MAX];
-        lr_report_type(reader, node, field->name, lr_field_expected(field, expected));
-    } else if (lr_read_color(reader, node, field, field->name, &background[0])) {
-        background[1] = background[0];
-    }
-}
-
 /* Cameras are known to be given in one way or the other, else that is reported. */
 static void read_all_cameras(lr_reader *reader, const lr_node *root, const lr_given *given,
                              lr_vec3 up)
@@ -150,8 +136,8 @@ void lr_read_scene(lr_reader *reader, const lr_node *root)
     lr_record_defaults(&lr_image_record, scene);
     lr_record_defaults(&lr_fog_record, scene);
     const lr_field *sky = &record->fields[lr_field_index(record, "background")];
-    scene->background[0] = (lr_color){sky->fallback[0], sky->fallback[1], sky->fallback[2]};
-    scene->background[1] = (lr_color){sky->fallback[3], sky->fallback[4], sky->fallback[5]};
+    scene->background.colors[0] = (lr_color){sky->fallback[0], sky->fallback[1], sky->fallback[2]};
+    scene->background.colors[1] = (lr_color){sky->fallback[3], sky->fallback[4], sky->fallback[5]};
 
     const lr_node *image = lr_given_value(&given, record, "image");
     const lr_node *fog = lr_given_value(&given, record, "fog");
@@ -168,7 +154,7 @@ void lr_read_scene(lr_reader *reader, const lr_node *root)
     if (fog)
         lr_read_record(reader, fog, fog, &lr_fog_record, scene, &ignored);
     if (background)
-        read_background(reader, background, sky);
+        lr_read_background(reader, background, sky);
     if (materials)
         lr_read_materials(reader, materials);
     scene->default_light = !lights;

@@ -147,7 +147,7 @@ static json_t *field_schema(schema *s, const lr_field *field)
         fallback = numbers(s, d, 3);
         break;
     case LR_FIELD_BACKGROUND:
-        node = moving(s, any_of(s, reference(s, "color"), record_schema(s, field->record)));
+        node = moving(s, any_of(s, reference(s, "color"), reference(s, "background")));
         fallback = put(s, json_object(), "gradient",
                        append(s, append(s, json_array(), numbers(s, d, 3)), numbers(s, d + 3, 3)));
         break;
@@ -248,6 +248,14 @@ static json_t *keys_schema(schema *s)
     return put(s, node, "additionalProperties", json_false());
 }
 
+static json_t *one_of(schema *s, const lr_record *records, uint32_t count)
+{
+    json_t *options = json_array();
+    for (uint32_t i = 0; i < count; i++)
+        append(s, options, record_schema(s, &records[i]));
+    return put(s, json_object(), "oneOf", options);
+}
+
 static json_t *definitions(schema *s)
 {
     json_t *defs = json_object();
@@ -258,10 +266,8 @@ static json_t *definitions(schema *s)
     put(s, defs, "share", color_schema(s, 1));
     put(s, defs, "rotate", record_schema(s, &lr_rotation_record));
     put(s, defs, "camera", record_schema(s, &lr_camera_record));
-    json_t *patterns = json_array();
-    for (uint32_t i = 0; i < lr_pattern_record_count; i++)
-        append(s, patterns, record_schema(s, &lr_pattern_records[i]));
-    put(s, defs, "pattern", put(s, json_object(), "oneOf", patterns));
+    put(s, defs, "background", one_of(s, lr_background_records, lr_background_record_count));
+    put(s, defs, "pattern", one_of(s, lr_pattern_records, lr_pattern_record_count));
     put(s, defs, "material", record_schema(s, &lr_material_record));
     put(s, defs, "light", item_schema(s, lr_light_records, lr_light_record_count, NULL));
     return put(s, defs, "object",

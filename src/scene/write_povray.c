@@ -71,9 +71,11 @@ static void put_background(lr_writer *writer)
 {
     const lr_scene *scene = writer->scene;
     FILE *out = writer->out;
-    if (lr_colors_equal(scene->background[0], scene->background[1])) {
+    if (scene->background.kind != LR_BACKGROUND_GRADIENT)
+        lr_writer_cannot(writer, "pictures and the sky as background are left out");
+    if (lr_colors_equal(scene->background.colors[0], scene->background.colors[1])) {
         fputs("background { ", out);
-        put_rgb(out, scene->background[0]);
+        put_rgb(out, scene->background.colors[0]);
         fputs(" }\n", out);
         return;
     }
@@ -81,9 +83,9 @@ static void put_background(lr_writer *writer)
     fputs("sky_sphere { pigment { function { min(0.999999, max(0, 0.5+0.5*", out);
     put_dot(out, scene->background_up, (lr_vec3){0, 0, 0});
     fputs(")) }\n  color_map { [0 ", out);
-    put_rgb(out, scene->background[0]);
+    put_rgb(out, scene->background.colors[0]);
     fputs("] [1 ", out);
-    put_rgb(out, scene->background[1]);
+    put_rgb(out, scene->background.colors[1]);
     fputs("] } } }\n", out);
 }
 
