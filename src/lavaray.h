@@ -242,6 +242,17 @@ typedef struct lr_text {
     const char *key, *value;
 } lr_text;
 
+/* What an EXR holds of the same pixels beside the picture: a channel NAME.C for each letter C of
+ * `channels`, such as "RGB" or "XYZ", or for "" one channel called NAME. Layers have 32 bits also
+ * where the picture has 16. */
+typedef struct lr_layer {
+    const char *name; /* 2 to 29 printable ASCII characters without spaces and dots; each once */
+    const char *channels;
+    const void *samples; /* floats, or uint32_t; channels * width * height, top row first */
+    bool integers;       /* the samples are uint32_t */
+    bool light;          /* "RGB" floats that white balance and exposure change as the picture */
+} lr_layer;
+
 #define LR_WHITE_MIN 1667 /* kelvin */
 #define LR_WHITE_MAX 25000
 
@@ -255,6 +266,8 @@ typedef struct lr_encoding {
     bool half;            /* EXR: 16-bit floats, those above 65504 become 65504; otherwise 32-bit */
     const lr_text *texts; /* PNG: text chunks, EXR: string attributes; PPM and PFM carry none */
     uint32_t text_count;
+    const lr_layer *layers; /* EXR alone */
+    uint32_t layer_count;
 } lr_encoding;
 
 /* The format that a path's ending names (.ppm .png .pfm .exr), false when it names none. */
