@@ -287,6 +287,15 @@ typedef enum lr_integrator {
     LR_INTEGRATOR_PATH,    /* all ways of light, by chance: Kajiya's paths, 1986 */
 } lr_integrator;
 
+/* How samples weigh by their distance from the middle of the pixel: in each direction up to 0.5, 1 or
+ * 1.5 pixels away. */
+typedef enum lr_filter {
+    LR_FILTER_DEFAULT, /* as the scene says */
+    LR_FILTER_BOX,
+    LR_FILTER_TENT,
+    LR_FILTER_BLACKMAN_HARRIS,
+} lr_filter;
+
 typedef struct lr_render_options {
     uint32_t width, height; /* 0: as the scene says */
     uint32_t samples;       /* per pixel; 0: as the scene says */
@@ -296,6 +305,7 @@ typedef struct lr_render_options {
     bool has_seed;
     const char *camera; /* NULL: the scene's first */
     lr_integrator integrator;
+    lr_filter filter;
     struct {
         uint32_t x, y, width, height; /* of the picture; width 0: all of it */
     } crop;
@@ -317,7 +327,7 @@ typedef struct lr_render_stats {
     lr_integrator integrator;
     struct {
         uint64_t traced, hit;
-    } primary, reflected, refracted, shadow;
+    } primary, reflected, refracted, shadow, bounced; /* bounced: the later rays of paths */
     uint64_t passed;          /* crossings of surfaces hidden inside another medium */
     uint64_t dropped_depth;   /* rays not traced because the depth was used up */
     uint64_t dropped_weight;  /* ... because their weight was below min_weight */

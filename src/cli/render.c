@@ -215,15 +215,19 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
         text[0] = '\0';
         return;
     }
-    fprintf(out, "%ux%u, %u sample%s, depth %u, seed %u", (unsigned)s->width, (unsigned)s->height,
-            (unsigned)s->samples, s->samples == 1 ? "" : "s", (unsigned)s->depth,
-            (unsigned)s->seed);
+    fprintf(out, "%s%ux%u, %u sample%s, depth %u, seed %u",
+            s->integrator == LR_INTEGRATOR_PATH ? "paths, " : "", (unsigned)s->width,
+            (unsigned)s->height, (unsigned)s->samples, s->samples == 1 ? "" : "s",
+            (unsigned)s->depth, (unsigned)s->seed);
     if (v->crop.width) {
         fprintf(out, ", crop %u,%u,%u,%u", (unsigned)v->crop.x, (unsigned)v->crop.y,
                 (unsigned)v->crop.width, (unsigned)v->crop.height);
     }
     if (v->picture.camera) {
         fprintf(out, ", camera %.200s", v->picture.camera);
+    }
+    if (v->picture.filter) {
+        fprintf(out, ", filter %s", v->picture.filter);
     }
     if (encoding->exposure != 0) {
         fprintf(out, ", exposure %.7g", (double)encoding->exposure);
