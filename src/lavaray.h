@@ -278,6 +278,35 @@ bool lr_format_from_path(const char *path, lr_format *format);
 lr_status lr_picture_write(const lr_picture *picture, const char *path, const lr_encoding *encoding,
                            lr_error *error);
 
+/* ---- Denoising -----------------------------------------------------------------------------
+ *
+ * By Intel's Open Image Denoise, where it is installed (libOpenImageDenoise.so.2, .1 or .0). What
+ * it makes of a picture is not covered by the promise of equal bytes. */
+
+typedef struct lr_denoiser lr_denoiser;
+
+/* LR_ERROR_FILE: the library is not there or not complete; LR_ERROR_DEVICE: it refuses this
+ * computer. It stays loaded until the program ends. */
+lr_status lr_denoiser_open(lr_denoiser **denoiser, lr_error *error);
+void lr_denoiser_close(lr_denoiser *denoiser);
+
+/* "Open Image Denoise 2.3.0" */
+const char *lr_denoiser_name(const lr_denoiser *denoiser);
+
+typedef struct lr_denoise_options {
+    /* NULL, or what the same pixels show first: 3 * width * height floats each, top row first. They
+     * keep textures and edges sharp. Normals need albedo beside them. */
+    const float *albedo, *normal; /* 0 to 1; unit vectors */
+    /* As in lr_render_options; may be called on another thread. */
+    bool (*progress)(void *user, double fraction);
+    void *user;
+} lr_denoise_options;
+
+/* Denoises light, so before white balance, exposure and tone map. options may be NULL. When it
+ * fails the picture is as it was. */
+lr_status lr_denoiser_run(lr_denoiser *denoiser, lr_picture *picture,
+                          const lr_denoise_options *options, lr_error *error);
+
 /* ---- Rendering ---------------------------------------------------------------------------- */
 
 /* How light is found. */
@@ -287,8 +316,8 @@ typedef enum lr_integrator {
     LR_INTEGRATOR_PATH,    /* all ways of light, by chance: Kajiya's paths, 1986 */
 } lr_integrator;
 
-/* How samples weigh by their distance from the middle of the pixel: in each direction up to 0.5, 1 or
- * 1.5 pixels away. */
+/* How samples weigh by their distance from the middle of the pixel: in each direction up to 0.5, 1
+ * or 1.5 pixels away. */
 typedef enum lr_filter {
     LR_FILTER_DEFAULT, /* as the scene says */
     LR_FILTER_BOX,

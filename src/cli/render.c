@@ -233,6 +233,9 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
         fprintf(out, ", exposure %.7g", (double)encoding->exposure);
     }
     describe_look(encoding, out);
+    if (record->denoiser) {
+        fprintf(out, ", denoised by %s", record->denoiser);
+    }
     if (encoding->format == LR_FORMAT_PNG && encoding->transfer == LR_TRANSFER_LINEAR) {
         fputs(", linear", out);
     }
@@ -240,14 +243,18 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
 }
 
 /* Traces and writes; fills what record does not hold yet. */
-static int trace_and_write(const values *v, lr_device *device, const lr_scene *scene,
-                           lr_encoding encoding, progress *p, double start, render_record *record)
+static int trace_and_write(const values *v, lr_device *device, lr_denoiser *denoiser,
+                           const lr_scene *scene, lr_encoding encoding, progress *p, double start,
+                           render_record *record)
 {
     lr_error error = {0};
     lr_picture picture = {0};
     lr_render_options render_options = make_options(v, p);
     progress_phase(p, "building and compiling");
     lr_status status = lr_render(device, scene, &render_options, &picture, &record->stats, &error);
+    if (status == LR_OK) {
+        status = denoise_picture(denoiser, &picture, p, record, &error);
+    }
     progress_clear(p);
     int code;
     if (status == LR_ERROR_INTERRUPTED || (status == LR_OK && interrupted())) {
@@ -270,7 +277,7 @@ static int trace_and_write(const values *v, lr_device *device, const lr_scene *s
         {LR_STAMP_SOFTWARE, "lavaray " LR_VERSION},
         {LR_STAMP_SCENE, record->scene_hash},
         {LR_STAMP_SETTINGS, settings},
-        {LR_STAMP_PIXELS, record->stats.hash},
+        {LR_STAMP_PIXELS, record->denoiser ? record->denoised_hash : record->stats.hash},
     };
     encoding.texts = texts;
     encoding.text_count = sizeof texts / sizeof *texts;
@@ -318,6 +325,7 @@ static int run(const command *self, int argc, char **argv)
 
     lr_scene *scene = NULL;
     lr_device *device = NULL;
+    lr_denoiser *denoiser = NULL;
     progress_phase(&p, "reading scene");
     render_record record = {.scene = path, .output = v.output, .camera = v.picture.camera};
     lr_scene_info scene_info;
@@ -344,6 +352,14 @@ static int run(const command *self, int argc, char **argv)
     record.tone = lr_tone_name(encoding.tone);
     record.white = encoding.white;
 
+    if (v.look.denoise) {
+        error.status = lr_denoiser_open(&denoiser, &error);
+    }
+    if (error.status != LR_OK) {
+        progress_clear(&p);
+        code = report_failure(&error);
+        goto done;
+    }
     progress_phase(&p, "opening device");
     double device_start = seconds_now();
     lr_device_desc desc = {.select = v.picture.device, .validation = validation_wanted()};
@@ -357,8 +373,9 @@ static int run(const command *self, int argc, char **argv)
     }
     record.device = *lr_device_get_info(device);
     record.exact = lr_device_is_exact(device);
-    code = trace_and_write(&v, device, scene, encoding, &p, start, &record);
+    code = trace_and_write(&v, device, denoiser, scene, encoding, &p, start, &record);
 done:
+    lr_denoiser_close(denoiser);
     lr_device_close(device);
     lr_scene_destroy(scene);
     return code;
