@@ -275,6 +275,9 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
         fprintf(out, ", exposure %.7g", (double)encoding->exposure);
     }
     describe_look(encoding, out);
+    if (record->denoiser) {
+        fprintf(out, ", denoised by %s", record->denoiser);
+    }
     if (encoding->format == LR_FORMAT_PNG && encoding->transfer == LR_TRANSFER_LINEAR) {
         fputs(", linear", out);
     }
@@ -282,14 +285,18 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
 }
 
 /* Traces and writes; fills what record does not hold yet. */
-static int trace_and_write(const values *v, lr_device *device, const lr_scene *scene,
-                           lr_encoding encoding, progress *p, double start, render_record *record)
+static int trace_and_write(const values *v, lr_device *device, lr_denoiser *denoiser,
+                           const lr_scene *scene, lr_encoding encoding, progress *p, double start,
+                           render_record *record)
 {
     lr_error error = {0};
     lr_picture picture = {0};
     lr_render_options render_options = make_options(v, p);
     progress_phase(p, "building and compiling");
     lr_status status = lr_render(device, scene, &render_options, &picture, &record->stats, &error);
+    if (status == LR_OK) {
+        status = denoise_picture(denoiser, &picture, p, record, &error);
+    }
     progress_clear(p);
     int code;
     if (status == LR_ERROR_INTERRUPTED || (status == LR_OK && interrupted())) {
@@ -312,7 +319,7 @@ static int trace_and_write(const values *v, lr_device *device, const lr_scene *s
         {LR_STAMP_SOFTWARE, "lavaray " LR_VERSION},
         {LR_STAMP_SCENE, record->scene_hash},
         {LR_STAMP_SETTINGS, settings},
-        {LR_STAMP_PIXELS, record->stats.hash},
+        {LR_STAMP_PIXELS, record->denoiser ? record->denoised_hash : record->stats.hash},
     };
     encoding.texts = texts;
     encoding.text_count = sizeof texts / sizeof *texts;
@@ -346,12 +353,17 @@ typedef struct job {
     lr_encoding encoding;
     progress progress;
     lr_device *device;
+    lr_denoiser *denoiser; /* NULL: not asked for */
     double device_seconds;
 } job;
 
 static int open_device(job *j)
 {
     lr_error error = {0};
+    if (j->v.look.denoise && lr_denoiser_open(&j->denoiser, &error)) {
+        progress_clear(&j->progress);
+        return report_failure(&error);
+    }
     progress_phase(&j->progress, "opening device");
     double start = seconds_now();
     lr_device_desc desc = {.select = j->v.picture.device, .validation = validation_wanted()};
@@ -406,7 +418,8 @@ static int render_picture(job *j, double start, lr_scene **scene)
     record.device_seconds = j->device_seconds;
     record.device = *lr_device_get_info(j->device);
     record.exact = lr_device_is_exact(j->device);
-    return trace_and_write(v, j->device, *scene, encoding, &j->progress, start, &record);
+    return trace_and_write(v, j->device, j->denoiser, *scene, encoding, &j->progress, start,
+                           &record);
 }
 
 static int render_frames(job *j, lr_scene **scene)
@@ -458,6 +471,7 @@ static int run(const command *self, int argc, char **argv)
     progress_start(&j.progress, v->quiet);
     lr_scene *scene = NULL;
     code = v->frames ? render_frames(&j, &scene) : render_picture(&j, start, &scene);
+    lr_denoiser_close(j.denoiser);
     lr_device_close(j.device);
     lr_scene_destroy(scene);
     return code;
