@@ -180,6 +180,18 @@ def background(value, folder):
 
 # ---- The whole
 
+def choose_by_power(shapes):
+    """Mitsuba chooses lights at random; so that bright ones are chosen more often, which changes the
+    noise alone."""
+    powers = []
+    for s in shapes:
+        bare = mi.load_dict({key: value for key, value in s.items() if key != "emitter"})
+        area = float(np.ravel(bare.surface_area())[0])
+        powers.append(area * max(s["emitter"]["radiance"]["value"]))
+    for s, power in zip(shapes, powers):
+        s["emitter"]["sampling_weight"] = power / np.mean(powers)
+
+
 def sensor(camera, width, height):
     origin, target, fov, aperture, focus = take(
         camera, **{"from": [0, 1, 5], "to": [0, 0, 0], "fov": 40, "aperture": 0, "focus": 0})
@@ -189,7 +201,7 @@ def sensor(camera, width, height):
         "film": {"type": "hdrfilm", "width": width, "height": height, "pixel_format": "rgb",
                  "component_format": "float32", "rfilter": {"type": "box"}}}
     if aperture:
-        result.update(aperture_radius=float(aperture), focus_distance=float(focus))
+        result.update(aperture_radius=float(aperture) / 2, focus_distance=float(focus))
     return result
 
 
@@ -210,4 +222,5 @@ def load(path, size=None):
     for i, item in enumerate(objects):
         ((kind, o),) = item.items()
         result["object%d" % i] = shape(kind, o, materials)
+    choose_by_power([s for s in result.values() if "emitter" in s])
     return result
