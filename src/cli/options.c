@@ -141,6 +141,16 @@ bool parse_rectangle(const char *text, int64_t max, option_rectangle *rectangle)
     return good;
 }
 
+static bool parse_range(const char *text, int64_t min, int64_t max, option_range *range)
+{
+    int64_t low[2] = {min, min};
+    uint32_t ends[2] = {0};
+    bool good = strchr(text, '-') ? parse_integers(text, "-", 2, low, max, ends)
+                                  : parse_integers(text, "", 1, low, max, ends);
+    *range = (option_range){ends[0], strchr(text, '-') ? ends[1] : ends[0], true};
+    return good && range->first <= range->last;
+}
+
 /* "4096", "512M", "1.5G": bytes, in units of 1024. */
 static bool parse_bytes(const char *text, int64_t min, int64_t *bytes)
 {
@@ -229,6 +239,11 @@ static parse_result store_value(const command *self, const option *o, const char
                  o->value, max);
         break;
     }
+    case OPTION_RANGE:
+        good = parse_range(text, o->min, o->max, (option_range *)target);
+        snprintf(expected, sizeof expected, "%s such as 0-15, from %lld to %lld", o->value, min,
+                 max);
+        break;
     case OPTION_RECTANGLE:
         good = parse_rectangle(text, o->max, (option_rectangle *)target);
         snprintf(expected, sizeof expected,
@@ -268,7 +283,8 @@ static const option *find_option(const command *self, const char *argument, cons
 
 static parse_result check_operands(const command *self, int count, char **operands)
 {
-    if (count < self->min_operands && self->min_operands == 1) {
+    bool scenes = strncmp(self->operands, "SCENE", 5) == 0;
+    if (count < self->min_operands && self->min_operands == 1 && scenes) {
         return usage_error(self, "no scene given", "", "");
     }
     if (count < self->min_operands) {
