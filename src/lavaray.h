@@ -276,6 +276,11 @@ typedef struct lr_render_options {
     struct {
         uint32_t first, count;
     } sample_range;
+    /* 0, or how long the call may take: every pixel gets as many samples as fit, at least one and at
+     * most `samples` (0: 65536). The picture is that of so many samples; stats->samples tells how
+     * many. For LR_INTEGRATOR_PATH alone, whose first samples are those of any number, and neither
+     * with sample_range nor checkpoint. */
+    double seconds;
     /* NULL, or a file that keeps what has been traced, now and then and when the render ends early,
      * so that a later call with the same scene and settings goes on from there. The caller deletes
      * it once the picture is safe. LR_ERROR_FILE when it is anything else already. */

@@ -168,6 +168,27 @@ static bool parse_bytes(const char *text, int64_t min, int64_t *bytes)
     return *bytes >= min;
 }
 
+/* "500ms", "60s", "1.5m", "2h": seconds. */
+static bool parse_duration(const char *text, int64_t max, double *seconds)
+{
+    static const struct {
+        const char *name;
+        double seconds;
+    } units[] = {{"ms", 1e-3}, {"s", 1}, {"m", 60}, {"min", 60}, {"h", 3600}};
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || strspn(text, "0123456789.") != (size_t)(end - text)) {
+        return false;
+    }
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        if (strcmp(end, units[i].name) == 0) {
+            *seconds = value * units[i].seconds;
+            return *seconds > 0 && *seconds <= (double)max;
+        }
+    }
+    return false;
+}
+
 static parse_result store_value(const command *self, const option *o, const char *text,
                                 void *values)
 {
@@ -211,6 +232,10 @@ static parse_result store_value(const command *self, const option *o, const char
         good = parse_bytes(text, o->min, (int64_t *)target);
         snprintf(expected, sizeof expected, "a size of at least %lld bytes, such as 512M or 8G",
                  min);
+        break;
+    case OPTION_DURATION:
+        good = parse_duration(text, o->max, (double *)target);
+        snprintf(expected, sizeof expected, "a time such as 500ms, 60s, 10m or 2h");
         break;
     case OPTION_REAL: {
         char *end;

@@ -22,6 +22,7 @@ typedef enum option_kind {
     OPTION_RANGE,     /* option_range, each within min..max: 0-15, or one number */
     OPTION_CHOICE,    /* const char *, one of choices */
     OPTION_BYTES,     /* int64_t, at least min: 512M, 1.5G, 4096 */
+    OPTION_DURATION,  /* double, seconds, up to max: 500ms, 60s, 10m, 2h */
     OPTION_REPEATED,  /* option_texts: a text, any number of times up to OPTION_REPEATED_MAX */
 } option_kind;
 

@@ -18,7 +18,7 @@ typedef struct values {
     picture_values picture;
     option_rectangle crop;
     option_range sample_range;
-    double checkpoint_seconds;
+    double checkpoint_seconds, time;
     int64_t tile, chunk;
     load_values load;
     bool storage_loads, quiet, verbose;
@@ -48,12 +48,20 @@ static const option options[] = {
      .help = "trace only samples A to B, the first being 0, and\n"
              "write a part: an EXR file for lavaray merge",
      .also = "part|range"},
+    {.name = "time",
+     .kind = OPTION_DURATION,
+     AT(time),
+     .value = "TIME",
+     .max = 31536000,
+     .help = "as many samples as fit in 500ms, 60s, 10m, 2h, ..., at\n"
+             "least 1 and at most --spp; for --integrator path",
+     .also = "seconds|limit|timeout"},
     {.name = "checkpoint",
      .kind = OPTION_TEXT,
      AT(checkpoint),
      .value = "FILE",
-     .help = "keep what has been traced in FILE, every 30 seconds and\n"
-             "when interrupted; the same command goes on from there",
+     .help = "keep what is traced in FILE, every 30 seconds and when\n"
+             "interrupted; the same command goes on from there",
      .also = "resume|continue|save"},
     {.name = "stats",
      .kind = OPTION_TEXT,
@@ -172,6 +180,7 @@ static lr_render_options make_options(const values *v, progress *p)
         made.sample_range.first = v->sample_range.first;
         made.sample_range.count = v->sample_range.last - v->sample_range.first + 1;
     }
+    made.seconds = v->time;
     made.checkpoint = v->checkpoint;
     made.checkpoint_seconds = v->checkpoint_seconds;
     made.tile_size = (uint32_t)v->tile;

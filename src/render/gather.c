@@ -23,6 +23,7 @@ typedef struct gather {
     double done, total;     /* samples of all pixels */
     double running;         /* of the rectangle that is being traced */
     double next_checkpoint; /* lr_now() */
+    double start;           /* ... when the time began that is limited */
 } gather;
 
 /* A piece of the film. */
@@ -33,6 +34,11 @@ typedef struct rectangle {
 static bool report_progress(void *user, double fraction)
 {
     gather *g = user;
+    double limit = g->options->seconds;
+    if (limit > 0 && g->options->progress) {
+        double passed = (lr_now() - g->start) / limit;
+        return g->options->progress(g->options->user, passed < 1 ? passed : 1);
+    }
     return !g->options->progress ||
            g->options->progress(g->options->user, (g->done + fraction * g->running) / g->total);
 }
@@ -209,8 +215,44 @@ static lr_status reach_in_passes(gather *g, lr_error *error)
     return status;
 }
 
+/* Whole passes over the picture until the time is up, about: none is begun that would take longer
+ * than what is left. Each takes up to half of that, by what the one before took, so that the last
+ * ones are short. */
+static lr_status reach_in_time(gather *g, lr_error *error)
+{
+    uint32_t most = g->sums->count, reached = 0, next = 1;
+    lr_status status = LR_OK;
+    while (next > 0 && !status) {
+        double begun = lr_now();
+        status = reach_all(g, reached + next, error);
+        double now = lr_now(), left = g->start + g->options->seconds - now;
+        double fitting = left * next / (now - begun);
+        reached += next;
+        fitting = fitting < 2 ? fitting : fitting / 2;
+        next = at_most(fitting < reached ? (uint32_t)(fitting > 0 ? fitting : 0) : reached,
+                       most - reached);
+    }
+    g->sums->count = reached;
+    return status;
+}
+
+/* Whatever happens, a checkpoint is left of what has been traced. */
+static lr_status reach_with_checkpoints(gather *g, lr_error *error)
+{
+    lr_status status = resume(g, error);
+    if (status)
+        return status;
+    g->stats->resumed = lr_sums_done(g->sums);
+    g->done = g->stats->resumed * g->total;
+    g->next_checkpoint = lr_now() + checkpoint_seconds(g);
+    status = reach_in_passes(g, error);
+    if (status && g->done > g->stats->resumed * g->total)
+        write_checkpoint(g);
+    return status;
+}
+
 lr_status lr_gather(lr_wavefront *wavefront, const lr_settings *settings,
-                    const lr_render_options *options, lr_sums *sums, lr_error *error)
+                    const lr_render_options *options, lr_sums *sums, double start, lr_error *error)
 {
     gather g = {
         .wavefront = wavefront,
@@ -218,18 +260,11 @@ lr_status lr_gather(lr_wavefront *wavefront, const lr_settings *settings,
         .options = options,
         .sums = sums,
         .stats = wavefront->stats,
+        .start = start,
         .total = (double)sums->width * sums->height * sums->count,
     };
-    if (!options->checkpoint)
-        return reach_all(&g, sums->count, error);
-    lr_status status = resume(&g, error);
-    if (status)
-        return status;
-    g.stats->resumed = lr_sums_done(sums);
-    g.done = g.stats->resumed * g.total;
-    g.next_checkpoint = lr_now() + checkpoint_seconds(&g);
-    status = reach_in_passes(&g, error);
-    if (status && g.done > g.stats->resumed * g.total)
-        write_checkpoint(&g);
-    return status;
+    if (options->seconds > 0)
+        return reach_in_time(&g, error);
+    return options->checkpoint ? reach_with_checkpoints(&g, error)
+                               : reach_all(&g, sums->count, error);
 }

@@ -7,8 +7,9 @@
 #include "render/wavefront.h"
 
 /* Brings all pixels of the sums to the samples that they are to have. With a checkpoint, first
- * takes over what it holds; a failure on the way leaves one behind. */
+ * takes over what it holds; a failure on the way leaves one behind. With a time limit, which began
+ * at `start` (lr_now), sums->count becomes the number of samples reached. */
 lr_status lr_gather(lr_wavefront *wavefront, const lr_settings *settings,
-                    const lr_render_options *options, lr_sums *sums, lr_error *error);
+                    const lr_render_options *options, lr_sums *sums, double start, lr_error *error);
 
 #endif

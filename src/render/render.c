@@ -13,19 +13,20 @@ typedef struct job {
     lr_settings settings;
     lr_packed_scene packed;
     lr_wavefront *wavefront;
+    double begun; /* lr_now() */
 } job;
 
 static lr_status start(job *j, lr_device *device, const lr_scene *scene,
                        const lr_render_options *options, lr_render_stats *stats, lr_error *error)
 {
     static const lr_render_options defaults;
-    *j = (job){.options = options ? options : &defaults};
+    *j = (job){.options = options ? options : &defaults, .begun = lr_now()};
     *stats = (lr_render_stats){.device_seconds = device->open_seconds};
     lr_status status = lr_settle(scene, j->options, &j->settings, error);
-    double begun = lr_now(), cpu_begun = lr_cpu_now();
+    double cpu_begun = lr_cpu_now();
     if (!status)
         status = lr_pack_scene(scene, &j->settings, &j->packed, error);
-    stats->build_seconds = lr_now() - begun;
+    stats->build_seconds = lr_now() - j->begun;
     stats->build_cpu_seconds = lr_cpu_now() - cpu_begun;
     if (status)
         return status;
@@ -123,15 +124,23 @@ static lr_status render_tiles(const job *j, lr_picture *picture, lr_error *error
 }
 
 /* The same over the sums of the whole picture, which are left in *sums. */
-static lr_status render_sums(const job *j, const lr_scene *scene, lr_sums *sums,
-                             lr_picture *picture, lr_error *error)
+static lr_status render_sums(job *j, const lr_scene *scene, lr_sums *sums, lr_picture *picture,
+                             lr_error *error)
 {
     lr_status status = lr_sums_create(sums, scene, &j->settings, j->options, error);
     if (!status)
-        status = lr_gather(j->wavefront, &j->settings, j->options, sums, error);
+        status = lr_gather(j->wavefront, &j->settings, j->options, sums, j->begun, error);
+    if (!status && j->options->seconds > 0)
+        j->settings.samples = j->settings.sample_count = sums->count;
     if (!status)
         lr_sums_resolve(sums, picture->pixels);
     return status;
+}
+
+/* Whether a render goes over the picture more than once. */
+static bool needs_sums(const lr_render_options *options)
+{
+    return options->checkpoint || options->seconds > 0;
 }
 
 lr_status lr_render(lr_device *device, const lr_scene *scene, const lr_render_options *options,
@@ -145,7 +154,7 @@ lr_status lr_render(lr_device *device, const lr_scene *scene, const lr_render_op
     lr_status status = start(&j, device, scene, options, stats, error);
     if (!status)
         status = make_picture(&j, picture, error);
-    if (!status && j.options->checkpoint)
+    if (!status && needs_sums(j.options))
         status = render_sums(&j, scene, &sums, picture, error);
     else if (!status)
         status = render_tiles(&j, picture, error);

@@ -7,6 +7,7 @@
 /* Of a path-traced picture that nobody asked a number for: it shows what it will be. */
 #define PATH_SAMPLES 64
 
+#define SAMPLES_MAX 65536
 #define PIXELS_MAX (1u << 28)
 
 static lr_status choose_camera(const lr_scene *scene, const char *name, const lr_camera **camera,
@@ -58,13 +59,24 @@ lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_
         .threads = options->threads,
     };
     s->samples = options->samples ? options->samples : scene->image.samples;
+    if (!options->samples && options->seconds > 0)
+        s->samples = SAMPLES_MAX;
     if (!s->samples)
         s->samples = s->integrator == LR_INTEGRATOR_PATH ? PATH_SAMPLES : 1;
     if (s->width > 32768 || s->height > 32768)
         return lr_fail(error, LR_ERROR_ARGUMENT, "the size %ux%u is over 32768 (--size)", s->width,
                        s->height);
-    if (s->samples > 65536)
-        return lr_fail(error, LR_ERROR_ARGUMENT, "%u samples are over 65536 (--spp)", s->samples);
+    if (s->samples > SAMPLES_MAX)
+        return lr_fail(error, LR_ERROR_ARGUMENT, "%u samples are over %d (--spp)", s->samples,
+                       SAMPLES_MAX);
+    if (options->seconds > 0 && s->integrator != LR_INTEGRATOR_PATH)
+        return lr_fail(error, LR_ERROR_ARGUMENT,
+                       "a time limit (--time) needs --integrator path: where a whitted sample lies "
+                       "depends on how many there will be");
+    if (options->seconds > 0 && (options->checkpoint || options->sample_range.count))
+        return lr_fail(error, LR_ERROR_ARGUMENT,
+                       "a time limit (--time) goes with neither --checkpoint nor --sample-range; "
+                       "give the number of samples by --spp");
     if (s->first_sample >= s->samples || s->sample_count > s->samples - s->first_sample)
         return lr_fail(error, LR_ERROR_ARGUMENT,
                        "samples %u to %llu are not all among the picture's, 0 to %u "
