@@ -39,7 +39,17 @@ layout(constant_id = LR_SPEC_ONE_SIDED) const bool has_one_sided = true;
 layout(constant_id = LR_SPEC_CORNERS) const bool has_corners = true;
 layout(constant_id = LR_SPEC_INSPECT) const bool has_inspect = true;
 layout(constant_id = LR_SPEC_EXPLAIN) const bool explains = false;
+layout(constant_id = LR_SPEC_FEW) const bool has_few = true;
 layout(constant_id = LR_SPEC_PATH) const bool has_paths = true;
+layout(constant_id = LR_SPEC_EMITTERS) const bool has_emitters = true;
+layout(constant_id = LR_SPEC_DELTA_LIGHTS) const bool has_delta_lights = true;
+layout(constant_id = LR_SPEC_SOFT_LIGHTS) const bool has_soft_lights = true;
+layout(constant_id = LR_SPEC_FLAT_EMITTERS) const bool has_flat_emitters = true;
+layout(constant_id = LR_SPEC_DISK_EMITTERS) const bool has_disk_emitters = true;
+layout(constant_id = LR_SPEC_TRIANGLE_EMITTERS) const bool has_triangle_emitters = true;
+layout(constant_id = LR_SPEC_SPHERE_EMITTERS) const bool has_sphere_emitters = true;
+layout(constant_id = LR_SPEC_EMITS_FRONT) const bool has_emits_front = true;
+layout(constant_id = LR_SPEC_CAMERA) const bool has_lens = true;
 
 layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame; };
 layout(set = 0, binding = LR_BIND_SCENE_TEXEL) uniform usamplerBuffer scene_texels;

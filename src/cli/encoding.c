@@ -41,6 +41,9 @@ int choose_encoding(const command *self, const encoding_values *values, lr_encod
     if (floats && v->transfer && strcmp(v->transfer, "srgb") == 0) {
         return wrong_usage(self, "--transfer srgb is not for PFM and EXR, which are always linear");
     }
+    if (check_look(self, &v->look, encoding->format) != EXIT_FINE) {
+        return EXIT_USAGE;
+    }
     if (v->half && encoding->format != LR_FORMAT_EXR) {
         return wrong_usage(self, "--half is for EXR alone");
     }
@@ -55,9 +58,11 @@ int choose_encoding(const command *self, const encoding_values *values, lr_encod
     return check_writable(v->output);
 }
 
-void finish_encoding(const encoding_values *values, float scene_exposure, lr_encoding *encoding)
+void finish_encoding(const encoding_values *values, const lr_scene_info *scene,
+                     lr_encoding *encoding)
 {
-    encoding->exposure = isnan(values->exposure) ? scene_exposure : (float)values->exposure;
+    encoding->exposure = isnan(values->exposure) ? scene->exposure : (float)values->exposure;
+    choose_look(&values->look, scene, encoding);
 }
 
 void describe_picture(const lr_encoding *encoding, const char *settings, char *text, size_t size)
@@ -71,6 +76,7 @@ void describe_picture(const lr_encoding *encoding, const char *settings, char *t
     if (encoding->exposure != 0) {
         fprintf(out, ", exposure %.7g", (double)encoding->exposure);
     }
+    describe_look(encoding, out);
     if (encoding->format == LR_FORMAT_PNG && encoding->transfer == LR_TRANSFER_LINEAR) {
         fputs(", linear", out);
     }

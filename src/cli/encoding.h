@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "cli/cli.h"
+#include "cli/look.h"
 
 /* A member of a command's values. */
 typedef struct encoding_values {
@@ -13,6 +14,7 @@ typedef struct encoding_values {
     int64_t maxval;  /* -1: not given */
     double exposure; /* NaN: not given */
     bool half;
+    look_values look;
 } encoding_values;
 
 #define ENCODING_DEFAULTS                                                                          \
@@ -59,18 +61,22 @@ typedef struct encoding_values {
          .offset = offsetof(type, encoding.half),                                                  \
          .help = "16-bit floats in EXR; default: 32 bits, exact",                                  \
          .also = "float|exr"},                                                                     \
-    {                                                                                              \
-        .name = "exposure", .kind = OPTION_REAL, .offset = offsetof(type, encoding.exposure),      \
-        .value = "EV", .min = -64, .max = 64,                                                      \
-        .help = "stops, -64 to 64; 1 is twice as bright;\ndefault: the scene's"                    \
-    }
+        {.name = "exposure",                                                                       \
+         .kind = OPTION_REAL,                                                                      \
+         .offset = offsetof(type, encoding.exposure),                                              \
+         .value = "EV",                                                                            \
+         .min = -64,                                                                               \
+         .max = 64,                                                                                \
+         .help = "stops, -64 to 64; 1 is twice as bright;\ndefault: the scene's"},                 \
+        LOOK_OPTIONS(type)
 
 /* What the flags mean together, as far as no scene is needed for it, and whether the picture can be
  * written. Returns an exit_code, having printed what is wrong. */
 int choose_encoding(const command *self, const encoding_values *values, lr_encoding *encoding);
 
-/* Completes it by what the scene says. */
-void finish_encoding(const encoding_values *values, float scene_exposure, lr_encoding *encoding);
+/* Completes it by the exposure, tone map and white that the scene says. */
+void finish_encoding(const encoding_values *values, const lr_scene_info *scene,
+                     lr_encoding *encoding);
 
 /* What the file says about its pixels: the settings of the render with what the encoding adds. */
 void describe_picture(const lr_encoding *encoding, const char *settings, char *text, size_t size);

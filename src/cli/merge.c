@@ -52,7 +52,8 @@ static int merge(const values *v, const char *const *parts, int count, lr_encodi
         error.status = status;
         return report_failure(&error);
     }
-    finish_encoding(&v->encoding, info.exposure, &encoding);
+    const lr_scene_info scene = {.exposure = info.exposure, .tone = info.tone, .white = info.white};
+    finish_encoding(&v->encoding, &scene, &encoding);
     snprintf(settings, sizeof settings, info.missing[0] ? "%s, without samples %s" : "%s",
              info.settings, info.missing);
     int code =

@@ -117,9 +117,11 @@ static int check_part(const command *self, const values *v, const lr_encoding *e
     if (encoding->format != LR_FORMAT_EXR) {
         return wrong_usage(self, "--sample-range writes a part, which is an EXR file: -o FILE.exr");
     }
-    if (v->encoding.half || v->encoding.transfer || !isnan(v->encoding.exposure)) {
-        return wrong_usage(self, "--sample-range writes exact sums; give --half, --transfer and "
-                                 "--exposure to lavaray merge");
+    const encoding_values *e = &v->encoding;
+    if (e->half || e->transfer || !isnan(e->exposure) || e->look.tone || e->look.white != 0) {
+        return wrong_usage(self,
+                           "--sample-range writes exact sums: how they become a picture is for "
+                           "lavaray merge to say");
     }
     return EXIT_FINE;
 }
@@ -306,9 +308,11 @@ static int run(const command *self, int argc, char **argv)
     }
     lr_scene_get_info(scene, &scene_info);
     record.scene_hash = scene_info.sha256;
-    finish_encoding(&v.encoding, scene_info.exposure, &encoding);
+    finish_encoding(&v.encoding, &scene_info, &encoding);
     record.exposure =
         isnan(v.encoding.exposure) ? (double)scene_info.exposure : v.encoding.exposure;
+    record.tone = lr_tone_name(encoding.tone);
+    record.white = encoding.white;
 
     progress_phase(&p, "opening device");
     double device_start = seconds_now();

@@ -44,7 +44,8 @@ static lr_status check_same(const lr_sums *a, const char *a_path, const lr_sums 
                        "%.12s... and %.12s... (lavaray info shows them)",
                        a_path, b_path, a->id.numbers, b->id.numbers);
     if (strcmp(a->id.settings, b->id.settings) != 0 || a->samples != b->samples ||
-        a->width != b->width || a->height != b->height || a->exposure != b->exposure)
+        a->width != b->width || a->height != b->height || a->exposure != b->exposure ||
+        a->white != b->white || a->tone != b->tone)
         return lr_fail(error, LR_ERROR_FILE,
                        "%.200s and %.200s have different settings: '%.200s' and '%.200s'", a_path,
                        b_path, a->id.settings, b->id.settings);
@@ -130,6 +131,8 @@ static lr_status make_picture(const lr_sums *sums, lr_picture *picture, lr_merge
     memcpy(info->scene_hash, sums->scene, sizeof info->scene_hash);
     memcpy(info->settings, sums->id.settings, sizeof info->settings);
     info->exposure = sums->exposure;
+    info->white = sums->white;
+    info->tone = sums->tone;
     info->samples = sums->film[LR_FILM_SAMPLES];
     lr_picture_hash(picture, info->hash);
     return LR_OK;

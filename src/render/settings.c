@@ -38,6 +38,11 @@ static uint64_t at_least_one(uint32_t count)
     return count ? count : 1;
 }
 
+uint32_t lr_default_samples(lr_integrator integrator)
+{
+    return integrator == LR_INTEGRATOR_PATH ? PATH_SAMPLES : 1;
+}
+
 lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_settings *settings,
                     lr_error *error)
 {
@@ -55,6 +60,7 @@ lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_
                                           : (lr_integrator)(scene->image.integrator + 1),
         .first_sample = options->sample_range.first,
         .sample_count = options->sample_range.count,
+        .filter = options->filter,
         .leaf_size = options->leaf_size,
         .threads = options->threads,
     };
@@ -62,7 +68,7 @@ lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_
     if (!options->samples && options->seconds > 0)
         s->samples = SAMPLES_MAX;
     if (!s->samples)
-        s->samples = s->integrator == LR_INTEGRATOR_PATH ? PATH_SAMPLES : 1;
+        s->samples = lr_default_samples(s->integrator);
     if (s->width > 32768 || s->height > 32768)
         return lr_fail(error, LR_ERROR_ARGUMENT, "the size %ux%u is over 32768 (--size)", s->width,
                        s->height);
@@ -108,15 +114,17 @@ lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_
 void lr_settings_describe(const lr_settings *settings, const lr_render_options *options, char *text,
                           size_t size)
 {
+    static const char *const filters[] = {NULL, "box", "tent", "blackman-harris"};
     const lr_settings *s = settings;
     size_t used =
-        (size_t)snprintf(text, size, "%ux%u, %u sample%s, depth %u, seed %u", s->width, s->height,
+        (size_t)snprintf(text, size, "%s%ux%u, %u sample%s, depth %u, seed %u",
+                         s->integrator == LR_INTEGRATOR_PATH ? "paths, " : "", s->width, s->height,
                          s->samples, s->samples == 1 ? "" : "s", s->depth, s->seed);
-    if (s->integrator == LR_INTEGRATOR_PATH)
-        used += (size_t)snprintf(text + used, size - used, ", path");
     if (options->crop.width)
         used += (size_t)snprintf(text + used, size - used, ", crop %u,%u,%u,%u", s->crop_x,
                                  s->crop_y, s->crop_width, s->crop_height);
     if (options->camera)
-        snprintf(text + used, size - used, ", camera %.200s", options->camera);
+        used += (size_t)snprintf(text + used, size - used, ", camera %.200s", options->camera);
+    if (options->filter)
+        snprintf(text + used, size - used, ", filter %s", filters[options->filter]);
 }

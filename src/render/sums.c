@@ -13,6 +13,8 @@ lr_status lr_sums_create(lr_sums *sums, const lr_scene *scene, const lr_settings
 {
     *sums = (lr_sums){
         .exposure = (float)scene->image.exposure,
+        .white = (float)scene->image.white,
+        .tone = scene->image.tone,
         .width = settings->crop_width,
         .height = settings->crop_height,
         .samples = settings->samples,

@@ -15,8 +15,9 @@ typedef struct lr_picture_id {
 
 typedef struct lr_sums {
     lr_picture_id id;
-    char scene[65];         /* hash of the scene's text: only for the file of the picture */
-    float exposure;         /* ... and so is this */
+    char scene[65];         /* hash of the scene's text: only for the file of the picture, */
+    float exposure, white;  /* ... as are these: the scene's own, */
+    lr_tone tone;           /* and this */
     uint32_t width, height; /* of the film */
     uint32_t samples;       /* of the whole picture, */
     uint32_t first, count;  /* and which of them these sums are to have */

@@ -18,7 +18,7 @@
 
 #define KEY_NUMBERS "lavaray.numbers"
 #define KEY_PART "lavaray.part"
-#define KEY_EXPOSURE "lavaray.exposure"
+#define KEY_LOOK "lavaray.look"
 #define KEY_CHECKSUM "lavaray.checksum"
 
 /* In the order of the film's words. */
@@ -27,7 +27,7 @@ static const char *const channels[LR_FILM_WORDS] = {
 };
 
 typedef struct file_texts {
-    char part[64], exposure[16], checksum[65];
+    char part[64], look[64], checksum[65];
 } file_texts;
 
 static void put_text(SHA2_CTX *context, const char *text)
@@ -47,7 +47,7 @@ static void hash_sums(const lr_sums *sums, file_texts *texts)
     put_text(&context, sums->id.settings);
     put_text(&context, sums->scene);
     put_text(&context, texts->part);
-    put_text(&context, texts->exposure);
+    put_text(&context, texts->look);
     for (size_t i = 0; i < words; i++) {
         for (int shift = 0; shift < 32; shift += 8)
             block[used++] = (unsigned char)(sums->film[i] >> shift);
@@ -61,6 +61,13 @@ static void hash_sums(const lr_sums *sums, file_texts *texts)
     lr_hash_text(digest, texts->checksum);
 }
 
+static uint32_t bits_of(float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
 static lr_status encode(const lr_sums *sums, unsigned char **bytes, size_t *size, lr_error *error)
 {
     lr_picture picture = {sums->width, sums->height, NULL};
@@ -72,9 +79,8 @@ static lr_status encode(const lr_sums *sums, unsigned char **bytes, size_t *size
     file_texts own;
     snprintf(own.part, sizeof own.part, "samples %u-%u of %u", sums->first,
              sums->first + sums->count - 1, sums->samples);
-    uint32_t exposure;
-    memcpy(&exposure, &sums->exposure, sizeof exposure);
-    snprintf(own.exposure, sizeof own.exposure, "%08x", exposure);
+    snprintf(own.look, sizeof own.look, "%08x %08x %s", bits_of(sums->exposure),
+             bits_of(sums->white), lr_tone_name(sums->tone));
     hash_sums(sums, &own);
     const lr_text texts[] = {
         {LR_STAMP_SOFTWARE, sums->id.software},
@@ -82,7 +88,7 @@ static lr_status encode(const lr_sums *sums, unsigned char **bytes, size_t *size
         {KEY_NUMBERS, sums->id.numbers},
         {LR_STAMP_SETTINGS, sums->id.settings},
         {KEY_PART, own.part},
-        {KEY_EXPOSURE, own.exposure},
+        {KEY_LOOK, own.look},
         {KEY_CHECKSUM, own.checksum},
     };
     lr_words words = {channels, LR_FILM_WORDS, sums->film};
@@ -136,14 +142,28 @@ static bool take_part(const char *text, lr_sums *sums)
     return good;
 }
 
-/* As its bits: no locale changes them. */
-static bool take_exposure(const char *text, float *exposure)
+/* A float as the 8 digits of its bits, which no locale changes, and a space. */
+static bool take_float(const char **text, float min, float max, float *value)
 {
-    if (strlen(text) != 8 || strspn(text, "0123456789abcdef") != 8)
+    if (strspn(*text, "0123456789abcdef") != 8 || (*text)[8] != ' ')
         return false;
-    uint32_t bits = (uint32_t)strtoul(text, NULL, 16);
-    memcpy(exposure, &bits, sizeof bits);
-    return *exposure >= -64 && *exposure <= 64;
+    uint32_t bits = (uint32_t)strtoul(*text, NULL, 16);
+    memcpy(value, &bits, sizeof bits);
+    *text += 9;
+    return *value >= min && *value <= max;
+}
+
+static bool take_look(const char *text, lr_sums *sums)
+{
+    if (!take_float(&text, -64, 64, &sums->exposure) ||
+        !take_float(&text, 0, LR_WHITE_MAX, &sums->white) ||
+        (sums->white > 0 && sums->white < LR_WHITE_MIN))
+        return false;
+    int tone = 0;
+    while (lr_tone_name((lr_tone)tone) && strcmp(lr_tone_name((lr_tone)tone), text) != 0)
+        tone++;
+    sums->tone = (lr_tone)tone;
+    return lr_tone_name(sums->tone) != NULL;
 }
 
 /* Copies a text of the file; false when there is none or no room for it. */
@@ -165,8 +185,8 @@ static lr_status take_texts(const lr_image *image, const char *name, lr_sums *su
                 take_text(image, LR_STAMP_SCENE, sums->scene, sizeof sums->scene) &&
                 take_text(image, KEY_PART, texts->part, sizeof texts->part) &&
                 take_part(texts->part, sums) &&
-                take_text(image, KEY_EXPOSURE, texts->exposure, sizeof texts->exposure) &&
-                take_exposure(texts->exposure, &sums->exposure);
+                take_text(image, KEY_LOOK, texts->look, sizeof texts->look) &&
+                take_look(texts->look, sums);
     return good ? LR_OK
                 : lr_fail(error, LR_ERROR_FILE,
                           SHOWN ": holds no sums of a render: it does not say of which one", name);

@@ -35,12 +35,12 @@ done
 
 # All that render can do to the file, merge can; the scene's exposure is the default.
 scene=$work/exposed.yaml
-sed 's/^image: {/&exposure: -1.3, /' $small >"$scene"
+sed 's/^image: {/&exposure: -1.3, tone: agx, white: 5000, /' $small >"$scene"
 grep -q exposure "$scene" || problem 'the scene has no image line'
 part a 0-1 --spp 3
 part b 2 --spp 3
 for look in '' '--exposure 0.7' '--maxval 65535' '--transfer linear' '--format ppm --maxval 1000' \
-    '--format exr' '--format exr --half'; do
+    '--tone none --white 6000' '--format exr' '--format exr --half'; do
     "$lavaray" render "$scene" "${args[@]}" --spp 3 $look -o "$work/one.png" || problem "render $look"
     "$lavaray" merge -q "$work"/{a,b}.exr $look -o "$work/merged.png" || problem "merge $look"
     same "$work/one.png" "$work/merged.png"
@@ -69,10 +69,12 @@ part c 0-2 --spp 3 --depth 1
 part d 2 --spp 4
 part e 2 --spp 3 --seed 5
 part f 2 --spp 3 --integrator path
+part g 2 --spp 3 --filter tent
 no 5 'different settings.*depth 5.*depth 1' "$work"/{a,c}.exr
 no 5 'different settings.*3 samples.*4 samples' "$work"/{a,d}.exr
 no 5 'different settings.*seed' "$work"/{a,e}.exr
 no 5 'different settings.*path' "$work"/{a,f}.exr
+no 5 'different settings.*tent' "$work"/{a,g}.exr
 no 5 'different settings.*crop 5,6,20,10' "$work"/{a,crop-b}.exr
 no 5 'samples in common, from 0 on' "$work"/{a,a,b}.exr
 no 5 'samples 2 of 3 are missing.*--sample-range.*--partial' "$work/a.exr"
@@ -115,6 +117,7 @@ wrong() {
 wrong 'EXR file' render $small -o "$work/x.png" --sample-range 0-1
 wrong 'lavaray merge' render $small -o "$work/x.exr" --sample-range 0-1 --half
 wrong 'lavaray merge' render $small -o "$work/x.exr" --sample-range 0-1 --exposure 1
+wrong 'lavaray merge' render $small -o "$work/x.exr" --sample-range 0-1 --white 6000
 for range in 3-2 -1 a 1- 1-2-3 0-65536 ''; do
     wrong 'A-B such as 0-15' render $small -o "$work/x.exr" --sample-range "$range"
 done

@@ -80,6 +80,8 @@ static lr_sums make_sums(void)
         .id = {"lavaray 1.2.3", "0123456789abcdef", "5x3, 64 samples, depth 6, seed 0"},
         .scene = "fedcba9876543210",
         .exposure = -1.1f,
+        .white = 5000.5f,
+        .tone = LR_TONE_ACES,
         .width = WIDTH,
         .height = HEIGHT,
         .samples = 64,
@@ -122,7 +124,8 @@ static void test_files_come_back(void **state)
     assert_string_equal(sums.id.numbers, back.id.numbers);
     assert_string_equal(sums.id.settings, back.id.settings);
     assert_string_equal(sums.scene, back.scene);
-    assert_true(sums.exposure == back.exposure);
+    assert_true(sums.exposure == back.exposure && sums.white == back.white);
+    assert_int_equal(sums.tone, back.tone);
     assert_int_equal(back.width, WIDTH);
     assert_int_equal(back.height, HEIGHT);
     assert_int_equal(back.samples, 64);
@@ -203,6 +206,9 @@ static void test_lies_are_refused(void **state)
     refuse(&sums);
     sums = make_sums();
     sums.exposure = 65;
+    refuse(&sums);
+    sums = make_sums();
+    sums.white = 1;
     refuse(&sums);
 }
 
