@@ -58,6 +58,7 @@ typedef struct lr_load_options {
     bool allow_path;        /* files may name files outside of the scene's folder */
     uint64_t max_triangles; /* of all meshes; 0: 100 million */
     uint64_t max_memory;    /* bytes for files and meshes, about; 0: 8 GiB */
+    double frame;               /* in which values with keys are read */
     /* Called from time to time with what is being done and the fraction of it, 0 to 1; returning
      * false stops with LR_ERROR_INTERRUPTED. */
     bool (*progress)(void *user, const char *what, double fraction);
@@ -103,6 +104,7 @@ typedef struct lr_scene_info {
     uint64_t triangles;       /* of the meshes, each counted once */
     const char *const *notes; /* what was left out of other programs' files, and why; the scene's */
     uint32_t note_count;
+    bool moves; /* some value has keys: frames differ */
 } lr_scene_info;
 
 void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info);
