@@ -21,6 +21,7 @@ typedef enum lr_inspect {
 typedef struct lr_settings {
     uint32_t width, height, samples, depth, seed;
     uint32_t crop_x, crop_y, crop_width, crop_height;
+    uint32_t first_sample, sample_count; /* of the samples: which are traced */
     const lr_camera *camera;
     lr_integrator integrator;
     lr_filter filter;
