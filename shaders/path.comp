@@ -9,7 +9,7 @@
 #include "bindings.glsl"
 #include "air.glsl"
 #include "basis.glsl"
-#include "bsdf.glsl"
+#include "bsdf_load.glsl"
 #include "emitter.glsl"
 #include "film.glsl"
 #include "found.glsl"
@@ -98,7 +98,8 @@ void main()
     vec2 choices = sample_pair(key, pair + pair_choices);
     basis around = basis_around(here.lit_by);
     vec3 wo = to_local(around, -ray.direction);
-    bsdf b = load_bsdf(m, here.color, sides, wo);
+    vec2 chances = sample_pair(key, pair + pair_roulette);
+    bsdf b = load_bsdf(here.ids.x, m, here.color, sides, wo, chances.y);
     vec3 origin = s.lit_from + here.n * s.offset;
     bool scatters = solid_there && !last;
     bool deepest = depth >= frame.depth;
@@ -121,7 +122,7 @@ void main()
     float survives = depth < roulette_from ? 1.0 : min(brightest(weight), 1.0);
     bool goes_on = scatters && next.kind != 0u && ex_dot(wi, side) > 0.0 &&
                    !(brightest(weight) < LR_WEIGHT_MIN) && !(brightest(weight) < frame.min_weight) &&
-                   sample_pair(key, pair + pair_roulette).x < survives;
+                   chances.x < survives;
     weight = survives < 1.0 ? weight * ex_rcp(max(survives, 1.0e-20)) : weight;
     uint kind = through ? LR_KIND_REFRACTED : LR_KIND_REFLECTED;
     uint state = (depth + 1u) | kind << LR_STATE_KIND_SHIFT | (deepest ? LR_STATE_LAST : 0u);

@@ -66,6 +66,17 @@ typedef struct lr_pattern {
 
 typedef enum lr_highlight { LR_HIGHLIGHT_BLINN, LR_HIGHLIGHT_PHONG } lr_highlight;
 
+/* What a material is made of, for paths. The fields of the classic shading are then an
+ * approximation (approximate.c). */
+typedef enum lr_model {
+    LR_MODEL_CLASSIC,
+    LR_MODEL_DIFFUSE,
+    LR_MODEL_DIELECTRIC,
+    LR_MODEL_CONDUCTOR,
+    LR_MODEL_PBR,
+    LR_MODEL_THIN_GLASS,
+} lr_model;
+
 typedef struct lr_material {
     char *name; /* NULL for one written inside an object */
     uint32_t line;
@@ -80,6 +91,12 @@ typedef struct lr_material {
     int priority;        /* -100..100: which of two overlapping media fills the overlap */
     double alpha_cutoff; /* where its texture's alpha is below, no surface; 0: everywhere */
     bool one_sided;      /* from behind, flats, triangles and open cones are not there */
+    lr_model model;      /* the rest is 0 where it does not use it */
+    double roughness;    /* 0..1; its square is the width of the microfacets' distribution */
+    lr_color eta, k;     /* conductor: refractive index; all 0: `color` is its reflectance */
+    double metallic, transmission, clearcoat, clearcoat_roughness; /* pbr: 0..1 */
+    lr_color sheen;                                                /* pbr: 0..1 */
+    double sheen_roughness;
 } lr_material;
 
 typedef enum lr_object_kind {

@@ -22,6 +22,7 @@ layout(std430, set = 0, binding = LR_BIND_COUNT) readonly buffer RecordBlock
     gpu_object some_object[2];
     gpu_medium some_medium[2];
     gpu_material some_material[2];
+    gpu_bsdf some_bsdf[2];
     gpu_texture some_texture[2];
     gpu_light some_light[2];
     gpu_ray some_ray[2];
@@ -190,6 +191,7 @@ void main()
     put(floatBitsToUint(frame.reach)); put(frame.corners); put_list(frame.instances);
     put_list(frame.triangles); put_vec3(frame.cells_from); put(frame.inspect);
     put_vec3(frame.inv_cell); put(floatBitsToUint(frame.inspect_scale));
+    put(frame.bsdfs); put(frame.albedo); put(frame.glass_albedo); put(frame.unused);
     put(work.tile_x); put(work.tile_y); put(work.tile_width); put(work.tile_height);
     put(work.first_sample); put(work.count); put(work.first); put(work.light);
     put(work.light_count); put(work.first_lights); put(work.shadow_room);
