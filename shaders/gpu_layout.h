@@ -82,16 +82,26 @@ typedef struct vec4 {
 #define LR_SPEC_INSPECT 33 /* the film gets frame.inspect instead of light */
 #define LR_SPEC_EXPLAIN 34 /* every ray and light is noted: gpu_notes */
 #define LR_SPEC_PATH 35    /* paths instead of ray trees: path.comp */
-#define LR_SPEC_GLOSS 36       /* paths: some material has a rough reflection, */
-#define LR_SPEC_METALS 37      /* ... or any, with eta and k, */
-#define LR_SPEC_ROUGH_GLASS 38 /* ... or lets light through a rough surface, */
-#define LR_SPEC_DELTA 39       /* ... or mirrors or refracts as a smooth one, */
-#define LR_SPEC_COAT 40
-#define LR_SPEC_SHEEN 41
-#define LR_SPEC_HIGHLIGHT 42 /* ... or has the classic highlight, */
-#define LR_SPEC_OREN_NAYAR 43
-#define LR_SPEC_MODELS 44 /* ... or is not classic */
-#define LR_SPEC_COUNT 45
+#define LR_SPEC_FEW 36     /* ... whose rays are to test all primitives */
+#define LR_SPEC_EMITTERS 37          /* paths have some light source to choose */
+#define LR_SPEC_DELTA_LIGHTS 38      /* ... from scene.lights; */
+#define LR_SPEC_SOFT_LIGHTS 39       /* some of these have an extent */
+#define LR_SPEC_FLAT_EMITTERS 40     /* flat surfaces that shine: */
+#define LR_SPEC_DISK_EMITTERS 41     /* some are disks, */
+#define LR_SPEC_TRIANGLE_EMITTERS 42 /* or triangles */
+#define LR_SPEC_SPHERE_EMITTERS 43
+#define LR_SPEC_EMITS_FRONT 44 /* some surface shines on one side alone */
+#define LR_SPEC_CAMERA 45 /* some camera is more than a pinhole, or the filter than a box */
+#define LR_SPEC_GLOSS 46       /* paths: some material has a rough reflection, */
+#define LR_SPEC_METALS 47      /* ... or any, with eta and k, */
+#define LR_SPEC_ROUGH_GLASS 48 /* ... or lets light through a rough surface, */
+#define LR_SPEC_DELTA 49       /* ... or mirrors or refracts as a smooth one, */
+#define LR_SPEC_COAT 50
+#define LR_SPEC_SHEEN 51
+#define LR_SPEC_HIGHLIGHT 52 /* ... or has the classic highlight, */
+#define LR_SPEC_OREN_NAYAR 53
+#define LR_SPEC_MODELS 54 /* ... or is not classic */
+#define LR_SPEC_COUNT 55
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -296,6 +306,7 @@ LR_ROWS(gpu_medium, 1)
 #define LR_GPU_FRESNEL 1u
 #define LR_GPU_PHONG 2u
 #define LR_GPU_LIT 4u /* has ambient, diffuse, specular or emitted light to show */
+#define LR_GPU_FRONT_ONLY 8u /* shines to where its normal points, not to the other side */
 
 #define LR_MATERIAL_ROWS 9u
 
@@ -399,11 +410,62 @@ struct gpu_light {
     vec3 direction; /* unit, the way the light travels */
     float cos_angle;
     float cos_scale; /* 1 / (cos inner - cos angle) */
-    uint unused0;
-    uint unused1;
-    uint unused2;
+    float radius;    /* point, spot: of the ball that shines, for paths; 0: a point */
+    float spread;    /* directional: 1 - cos of half the angle that it fills, for paths */
+    uint unused;
 };
 LR_ROWS(gpu_light, 4)
+
+/* What a path's vertex may choose as its light source: one of the lights, a surface that shines or
+ * one facet of it. */
+#define LR_GPU_EMITTER_LIGHT 1u
+#define LR_GPU_EMITTER_RECTANGLE 2u
+#define LR_GPU_EMITTER_DISK 3u
+#define LR_GPU_EMITTER_TRIANGLE 4u
+#define LR_GPU_EMITTER_SPHERE 5u
+#define LR_GPU_EMITTER_KIND 7u
+#define LR_GPU_EMITTER_FRONT 8u /* shines to the side that the normal points to */
+#define LR_GPU_EMITTER_BACK 16u
+#define LR_EMITTER_ROWS 5u
+
+struct gpu_emitter {
+    vec3 origin; /* rectangle, triangle: a corner; disk, sphere: the centre */
+    uint kind;
+    vec3 e1;        /* rectangle, triangle: an edge from there; disk: a radius */
+    float inv_pdf; /* 1 / probability of the choice; of what is flat, times its area */
+    vec3 e2;
+    float pdf; /* as gpu_object_emitter */
+    vec3 radiance;
+    uint light; /* which of the lights */
+    vec3 normal;
+    float radius;
+};
+LR_ROWS(gpu_emitter, 5)
+
+/* The choices are a power of two, all equally likely; a number within each, below LR_CHOICE_STEPS /
+ * how many there are, tells which of its two emitters (rows) it is. So all probabilities are whole
+ * multiples of 1 / LR_CHOICE_STEPS. */
+#define LR_CHOICE_BITS 24
+#define LR_CHOICE_STEPS 16777216.0
+struct gpu_choice {
+    uint threshold; /* from here on it is the second */
+    uint first;
+    uint second;
+    uint unused;
+};
+LR_ROWS(gpu_choice, 1)
+
+/* Of every object, what the weight of its light is reckoned from where a path meets it. */
+#define LR_OBJECT_EMITTER_ROWS 2u
+struct gpu_object_emitter {
+    vec3 center; /* of a sphere */
+    uint kind;   /* 0: no one chooses it; all that is flat counts as a rectangle */
+    float pdf;   /* that a path chooses it; of what is flat, by its area */
+    float radius;
+    uint unused0;
+    uint unused1;
+};
+LR_ROWS(gpu_object_emitter, 2)
 
 /* All primitives are numbered, kind by kind. A list holds one kind: those from number `begin` up to
  * `end`; the record of number i is at row base + i * its rows (modulo 2^32). Bounded primitives
@@ -420,12 +482,39 @@ typedef struct gpu_list gpu_list;
 #endif
 
 /* ---- What is the same for the whole picture ---- */
+#define LR_GPU_ORTHOGRAPHIC 1u
+#define LR_GPU_PANORAMA 2u
+#define LR_GPU_FILTER_TENT 4u
+#define LR_GPU_FILTER_BLACKMAN_HARRIS 8u
+#define LR_GPU_BLADES_SHIFT 8
+
+/* What makes a camera more than a pinhole with a box filter: LR_SPEC_CAMERA. */
+struct gpu_lens {
+    vec3 right; /* from the middle of the lens to its edge */
+    float inv_focus;
+    vec3 up;
+    uint kind;          /* LR_GPU_ORTHOGRAPHIC, ..., the number of blades */
+    vec3 origin_step;   /* by how much the frame's vectors change while the shutter is open */
+    float blade_turns;  /* from the right, counter-clockwise, to the first corner */
+    vec3 forward_step;
+    float inv_blades;
+    vec3 right_step;
+    float turns_across; /* a pixel of a panorama */
+    vec3 down_step;
+    float turns_down;
+};
+LR_ROWS(gpu_lens, 6)
+#ifdef __STDC__
+typedef struct gpu_lens gpu_lens;
+#endif
+
 struct gpu_frame {
     vec3 origin;      /* camera */
     float half_width; /* of the picture, in pixels */
     vec3 forward;
     float half_height;
-    vec3 pixel_right; /* one pixel to the right, at distance 1 along forward */
+    vec3 pixel_right; /* one pixel to the right: at distance 1 along forward; orthographic:
+                         anywhere; panorama: of unit length */
     float inv_samples;
     vec3 pixel_down;
     uint samples;
@@ -462,12 +551,17 @@ struct gpu_frame {
     uint inspect;
     vec3 inv_cell; /* 1 / its sides */
     float inspect_scale; /* the distance that is half-way between near and far */
-    uint bsdfs;  /* row of the gpu_bsdf of material 0 */
-    uint albedo; /* row of the tables, */
+    uint choices;         /* rows: of the first gpu_choice, */
+    uint object_emitters; /* and gpu_object_emitter */
+    uint choice_shift;    /* LR_CHOICE_BITS - log2 of how many choices there are */
+    uint unused_emitters;
+    gpu_lens lens;
+    uint bsdfs;        /* row of the gpu_bsdf of material 0 */
+    uint albedo;       /* row of the tables, */
     uint glass_albedo; /* and of those of glass */
-    uint unused;
+    uint unused_bsdfs;
 };
-LR_ROWS(gpu_frame, 23)
+LR_ROWS(gpu_frame, 30)
 #define LR_GPU_INSPECT_NORMAL 1u
 #define LR_GPU_INSPECT_DEPTH 2u
 #define LR_GPU_INSPECT_OBJECT 3u
@@ -495,6 +589,7 @@ struct gpu_work {
     uint film_first;      /* where the tile's first pixel is in the film, */
     uint film_pitch;      /* and how many pixels lie between it and the one below */
 };
+#define LR_SHADOW_THROUGH 4u /* light that no path finds otherwise comes through transparent objects */
 #define LR_SHADOW_LIGHTS 4 /* light l goes to segment l modulo this */
 
 /* ---- Queues ---- */
@@ -544,7 +639,7 @@ struct gpu_shadow_ray {
     vec3 origin; /* the point */
     uint pixel;  /* in kernels that explain, which have but one: the light's note */
     vec3 value;  /* what it adds to the pixel */
-    uint light;
+    uint light;  /* of a path: LR_SHADOW_THROUGH or 0 */
 };
 LR_ROWS(gpu_shadow_ray, 2)
 

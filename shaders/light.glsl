@@ -14,7 +14,7 @@ gpu_light share(gpu_light held, uint l)
     return gpu_light(share(held.position, lane), share(held.half_falloff, lane),
                      share(held.color, lane), share(held.flags, lane),
                      share(held.direction, lane), share(held.cos_angle, lane),
-                     share(held.cos_scale, lane), 0u, 0u, 0u);
+                     share(held.cos_scale, lane), 0.0, 0.0, 0u);
 }
 
 // Light that arrives from one source at a point, before shadows.
@@ -55,6 +55,14 @@ arriving_light sample_light(gpu_light light, vec3 position)
     if (has_spots)
         strength = strength * spot_share(light, wi);
     return arriving_light(light.color * strength, wi);
+}
+
+// What a surface sends out by itself towards where a ray of direction d comes from.
+vec3 emission_of(gpu_material m, vec3 d, vec3 normal)
+{
+    vec3 emission = vec3(m.emission_red, m.emission_green, m.emission_blue);
+    bool dark = has_emits_front && (m.flags & LR_GPU_FRONT_ONLY) != 0u && ex_dot(d, normal) > 0.0;
+    return dark ? vec3(0.0) : emission;
 }
 
 // The direction and length of the shadow ray from a point to a light; it ends a little before it.

@@ -11,6 +11,7 @@
 #include "basis.glsl"
 #include "bsdf_load.glsl"
 #include "emitter.glsl"
+#include "few.glsl"
 #include "film.glsl"
 #include "found.glsl"
 #include "queue.glsl"
@@ -35,22 +36,48 @@ float power_heuristic(float a, float b)
     return both ? ratio : 1.0;
 }
 
-// Sends the light of a source on its way to a point; what it brings once it is there.
+// In scenes without trees.
+nearest_hit nearest_listed(vec3 o, vec3 d)
+{
+    nearest_hit met;
+    if (has_few)
+        met = nearest_of_few(o, d);
+    else
+        met = trace_nearest(o, d);
+    return met;
+}
+
+// The optical depth of what stands in the way of light, as in shadow_rays.
+uvec3 listed_depth(vec3 o, light_sample light, bool wanted)
+{
+    uvec3 depth;
+    if (has_few) {
+        depth = uvec3(few_block(o, light.wi, light.t_max) ? LR_SHADOW_OPAQUE : 0u);
+    } else {
+        shadow_rays rays = shadow_rays_none();
+        set_ray(rays, wanted ? 0u : no_slot, vec4(light.wi, light.t_max), 1u);
+        rays.through = light.pdf == 0.0;
+        trace_shadows(rays, o, 1u);
+        depth = uvec3(rays.red.x, rays.green.x, rays.blue.x);
+    }
+    return depth;
+}
+
+// Sends the light of a source on its way to a point; what it brings, if that is known at once. Light
+// that paths cannot find by themselves comes straight through transparent objects, as in ray trees.
 vec3 arriving(vec3 origin, light_sample light, vec3 value, uint pixel, bool wanted)
 {
     vec3 arrives = vec3(0.0);
     if (has_trees) {
-        send_light(gpu_shadow_ray(origin, pixel, value, 0u), gpu_shadow_way(light.wi, light.t_max),
-                   wanted);
+        send_light(gpu_shadow_ray(origin, pixel, value, light.pdf == 0.0 ? LR_SHADOW_THROUGH : 0u),
+                   gpu_shadow_way(light.wi, light.t_max), wanted);
     } else {
-        shadow_rays rays = shadow_rays_none();
-        set_ray(rays, wanted ? 0u : no_slot, vec4(light.wi, light.t_max), 1u);
-        trace_shadows(rays, origin, 1u);
+        uvec3 depth = listed_depth(origin, light, wanted);
         COUNT(counters.shadow, uint(wanted))
-        COUNT(counters.shadow_hits, uint(rays.red.x != 0u))
-        arrives = value * light_left(uvec3(rays.red.x, rays.green.x, rays.blue.x));
+        COUNT(counters.shadow_hits, uint(wanted && depth != uvec3(0u)))
+        arrives = wanted ? value * light_left(depth) : vec3(0.0);
     }
-    return wanted ? arrives : vec3(0.0);
+    return arrives;
 }
 
 void main()
@@ -64,7 +91,7 @@ void main()
     if (has_trees)
         met = load_found(at - work.first);
     else
-        met = trace_nearest(ray.origin, ray.direction);
+        met = nearest_listed(ray.origin, ray.direction);
     bool hit = wanted && met.primitive != LR_PRIMITIVE_NONE;
     bool beyond = wanted && !hit, last = (ray.state & LR_STATE_LAST) != 0u;
 
@@ -81,7 +108,7 @@ void main()
     bool solid_there = hit && !sides.hidden;
 
     // The light that is there.
-    vec3 emission = vec3(m.emission_red, m.emission_green, m.emission_blue);
+    vec3 emission = emission_of(m, ray.direction, s.normal);
     vec3 light_from = ray.origin - ray.direction * path.distance;
     float pdf = emitter_pdf(s.object, light_from, ray.direction, path.distance + met.t, s.normal);
     vec3 found = solid_there ? emission : vec3(0.0);
@@ -140,6 +167,7 @@ void main()
         bounce_pdf = path.pdf;
         distance = path.distance + met.t;
     }
+
 
     film_add(ray.pixel, sum);
     // The stores come last: on a CPU an atomic waits for all stores before it.

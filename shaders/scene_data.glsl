@@ -36,12 +36,15 @@ gpu_sphere load_sphere(uint i)
     return sphere_of(scene_row(at), scene_row(at + 1u));
 }
 
+gpu_plane plane_of(uvec4 a, uvec4 b)
+{
+    return gpu_plane(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), b.x, b.y, b.z, b.w);
+}
+
 gpu_plane load_plane(uint i)
 {
     uint at = frame.planes.base + 2u * i;
-    vec4 a = scene_row_float(at);
-    uvec4 b = scene_row(at + 1u);
-    return gpu_plane(a.xyz, a.w, b.x, b.y, b.z, b.w);
+    return plane_of(scene_row(at), scene_row(at + 1u));
 }
 
 gpu_flat flat_of(uvec4 a, uvec4 b, uvec4 c, uvec4 d)
@@ -123,8 +126,8 @@ gpu_light load_light(uint index)
     uint at = frame.lights + 4u * index;
     vec4 a = scene_row_float(at), b = scene_row_float(at + 1u), c = scene_row_float(at + 2u);
     uvec4 d = scene_row(at + 3u);
-    return gpu_light(a.xyz, a.w, b.xyz, floatBitsToUint(b.w), c.xyz, c.w, uintBitsToFloat(d.x), d.y,
-                     d.z, d.w);
+    return gpu_light(a.xyz, a.w, b.xyz, floatBitsToUint(b.w), c.xyz, c.w, uintBitsToFloat(d.x),
+                     uintBitsToFloat(d.y), uintBitsToFloat(d.z), d.w);
 }
 
 #endif

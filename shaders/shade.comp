@@ -168,7 +168,7 @@ void main()
     film_sum sum = film_zero();
     if (has_fog && first_lights && !has_inspect)
         film_accumulate(sum, fog);
-    vec3 emission = vec3(m.emission_red, m.emission_green, m.emission_blue);
+    vec3 emission = emission_of(m, ray.direction, s.normal);
     vec3 own = weight * (m.ambient * color + emission);
     if (has_inspect) {
         if (first_lights && !at.absent)

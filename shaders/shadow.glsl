@@ -15,6 +15,7 @@ struct shadow_rays {
     vec4 x, y, z;   // unit directions
     vec4 t_max;     // a little short of the light
     uvec4 shadowed; // 1: what stands in the way counts
+    bool through;   // transparent objects let light through
     // The optical depth of what stands in the way, by channel: -log2 of what is left of the light in
     // LR_SHADOW_UNIT; LR_SHADOW_OPAQUE when nothing is. In integers, so that no order matters.
     uvec4 red, green, blue;
@@ -22,8 +23,8 @@ struct shadow_rays {
 
 shadow_rays shadow_rays_none()
 {
-    return shadow_rays(0u, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), uvec4(0u), uvec4(0u),
-                       uvec4(0u), uvec4(0u));
+    return shadow_rays(0u, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), uvec4(0u), true,
+                       uvec4(0u), uvec4(0u), uvec4(0u));
 }
 
 // Component i of v. By mix, since glslang makes branches of nested conditional expressions.
@@ -70,7 +71,7 @@ vec3 direction_of(shadow_rays rays, uint l)
 bool dim(inout shadow_rays rays, uint l, vec2 crossing, float t_max, uint object, uint flags)
 {
     uvec3 add = crosses(crossing, t_max) ? uvec3(LR_SHADOW_OPAQUE) : uvec3(0u);
-    if (has_transparent && (flags & LR_FLAG_TRANSPARENT) != 0u)
+    if (has_transparent && rays.through && (flags & LR_FLAG_TRANSPARENT) != 0u)
         add = tint(crossing, t_max, load_object_shadow(object));
     if ((flags & LR_FLAG_SHADOW) == 0u)
         add = uvec3(0u);

@@ -13,6 +13,7 @@ layout(local_size_x = LR_GROUP_SIZE) in;
 
 uint met = 0u, dark = 0u;  // bit k: ray k met something, and none of its light is left
 uvec3 ray_depth[RAYS];     // optical depths so far, in scenes with transparent shadow casters
+uint through = 0xFFFFFFFFu; // bit k: ray k goes through transparent objects
 uint noted[RAYS];          // the notes of the lights, in kernels that explain
 
 // What stands in the way: whether its material lets light through, and then its record for shadows.
@@ -40,7 +41,7 @@ void dim(uint k, obstacle by, vec2 crossing)
     bool meets = by.there && crosses(crossing, t_max), blocked = meets;
     uvec3 takes = uvec3(LR_SHADOW_OPAQUE);
     if (has_transparent) {
-        if (by.transparent)
+        if (by.transparent && ((through >> (k & 31u)) & 1u) != 0u)
             takes = tint(crossing, t_max, by.shadow);
         uvec3 depth = min(ray_depth[k] + (meets ? takes : uvec3(0u)), uvec3(LR_SHADOW_OPAQUE));
         ray_depth[k] = depth;
@@ -155,6 +156,8 @@ void main()
         if (has_paths) {
             gpu_shadow_way way = load_shadow_way(shadow_index(k));
             ray = vec4(way.direction, way.t_max);
+            if (has_transparent)
+                through &= (job.light & LR_SHADOW_THROUGH) != 0u ? ~0u : ~(1u << (k & 31u));
         } else {
             ray = shadow_ray(load_light(job.light), job.origin);
         }

@@ -75,14 +75,13 @@ surface surface_at(gpu_hit hit, vec3 o, vec3 d)
     uint primitive = hit.primitive;
     float t = hit.t;
     vec3 position = o + d * t, normal = vec3(0.0, 1.0, 0.0);
-    uint object = 0u;
+    uint object = hit.object;
     vec2 uv = vec2(0.0);
     bool planar = has_textures;
     vec3 a = abs(position);
     float reach = max(max(a.x, a.y), a.z);
     if (has_spheres && is_in(frame.spheres, primitive)) {
         gpu_sphere s = load_sphere(primitive);
-        object = s.object;
         normal = ex_normalize((position - s.center) * s.inv_radius);
         position = s.center + normal * s.radius;
         vec3 c = abs(s.center);
@@ -90,14 +89,12 @@ surface surface_at(gpu_hit hit, vec3 o, vec3 d)
     }
     if (has_planes && is_in(frame.planes, primitive)) {
         gpu_plane p = load_plane(primitive);
-        object = p.object;
         normal = p.normal;
         position = position + normal * (p.offset - ex_dot(normal, position));
         reach = max(reach, abs(p.offset));
     }
     if (has_flats && is_in(frame.flats, primitive)) {
         gpu_flat f = load_flat(primitive);
-        object = f.object;
         normal = f.normal;
         position = position + normal * (f.offset - ex_dot(normal, position));
         reach = max(reach, abs(f.offset));
@@ -110,7 +107,6 @@ surface surface_at(gpu_hit hit, vec3 o, vec3 d)
     bool cone = has_cones && is_in(frame.cones, primitive);
     if (has_solids && (ellipsoid || box || cone)) {
         gpu_solid s = load_solid(primitive);
-        object = s.object;
         vec3 p = solid_point(s, position), n = p;
         if (has_boxes)
             n = box ? box_face_normal(p) : n;

@@ -1,10 +1,11 @@
-#include "render/pack.h"
+#include "render/pack_internal.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "scene/camera.h"
 
 #define LOG2_E 1.4426950408889634
 
@@ -91,7 +92,8 @@ static void pack_material(const lr_scene *scene, const lr_material *m, struct gp
         .inv_length2 = length2 > 0 ? (float)(1 / length2) : 0,
         .pattern_direction = lr_pack_vec3(direction),
         .flags = (m->fresnel ? LR_GPU_FRESNEL : 0) |
-                 (m->highlight == LR_HIGHLIGHT_PHONG ? LR_GPU_PHONG : 0) | (lit ? LR_GPU_LIT : 0),
+                 (m->highlight == LR_HIGHLIGHT_PHONG ? LR_GPU_PHONG : 0) | (lit ? LR_GPU_LIT : 0) |
+                 (m->emits == LR_EMITS_FRONT ? LR_GPU_FRONT_ONLY : 0),
         .ambient = lr_pack_vec3(ambient),
         .shininess = (float)m->shininess,
         .diffuse = lr_pack_vec3(m->diffuse),
@@ -124,6 +126,7 @@ static lr_status pack_materials(const lr_scene *scene, lr_packed_scene *packed, 
         use[LR_SPEC_SCATTER] |=
             cut || !lr_color_is_black(m->reflect) || !lr_color_is_black(m->transmit);
         use[LR_SPEC_FRESNEL] |= m->fresnel;
+        use[LR_SPEC_EMITS_FRONT] |= m->emits == LR_EMITS_FRONT;
     }
     return LR_OK;
 }
@@ -138,9 +141,15 @@ void lr_pack_light(const lr_light *light, struct gpu_light *out)
                  (light->kind == LR_LIGHT_SPOT ? LR_GPU_LIGHT_SPOT : 0) |
                  (light->shadows ? LR_GPU_LIGHT_SHADOWS : 0),
         .direction = lr_pack_vec3(lr_vec3_normalize(light->direction)),
+        .radius = (float)light->radius,
     };
+    double sine, edge, inner;
+    if (light->kind == LR_LIGHT_DIRECTIONAL) {
+        /* 1 - cos(2a) = 2 sin(a)^2, which does not cancel. */
+        lr_sincos_degrees(light->angle / 4, &sine, &edge);
+        out->spread = (float)(2 * sine * sine);
+    }
     if (light->kind == LR_LIGHT_SPOT) {
-        double sine, edge, inner;
         lr_sincos_degrees(light->angle, &sine, &edge);
         lr_sincos_degrees(light->inner, &sine, &inner);
         out->cos_angle = (float)edge;
@@ -164,9 +173,20 @@ static lr_status pack_lights(const lr_scene *scene, lr_packed_scene *packed, lr_
         if (scene->default_light)
             continue;
         packed->constants[LR_SPEC_FALLOFF] |= scene->lights[i].falloff > 0;
+        packed->constants[LR_SPEC_SOFT_LIGHTS] |= lr_light_is_soft(&scene->lights[i]);
         packed->constants[LR_SPEC_SPOTS] |= scene->lights[i].kind == LR_LIGHT_SPOT;
     }
     return LR_OK;
+}
+
+/* Whether any camera needs more than a pinhole's rays, so that changing cameras changes no kernel.
+ */
+static bool has_lens(const lr_scene *scene)
+{
+    bool any = false;
+    for (uint32_t i = 0; i < scene->camera_count; i++)
+        any = any || !lr_camera_is_pinhole(&scene->cameras[i]);
+    return any;
 }
 
 lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_packed_scene *packed,
@@ -187,6 +207,7 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
     };
     packed->constants[LR_SPEC_INSPECT] = settings->inspect != LR_INSPECT_LIGHT;
     packed->constants[LR_SPEC_PATH] = settings->integrator == LR_INTEGRATOR_PATH;
+    packed->constants[LR_SPEC_CAMERA] = has_lens(scene) || lr_pack_filter(scene, settings);
     packed->constants[LR_SPEC_FOG] = scene->fog_density > 0;
     lr_status status = lr_pack_texture_records(scene, packed, error);
     if (!status)

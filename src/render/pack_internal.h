@@ -35,6 +35,9 @@ typedef struct lr_primitive {
     lr_bvh_box box;
 } lr_primitive;
 
+/* pack_camera.c: LR_GPU_FILTER_TENT, ...; 0: the box, which needs no kernel's help. */
+uint32_t lr_pack_filter(const lr_scene *scene, const lr_settings *settings);
+
 lr_transform lr_pack_inverse(const lr_transform *t);
 vec4 lr_pack_row(const double row[4], double scale);
 
@@ -78,6 +81,11 @@ void lr_pack_reach(float *reach, const lr_bvh_box *box);
  * the instance of object i. `flags` are the objects'. */
 lr_status lr_pack_meshes(const lr_scene *scene, const uint32_t *flags, uint32_t *instances,
                          lr_packed_scene *packed, lr_error *error);
+
+/* pack_emitters.c: for paths, what shines, how it is chosen, and how likely that is for each
+ * object. */
+lr_status lr_pack_emitters(const lr_scene *scene, const lr_primitive *primitives,
+                           lr_packed_scene *packed, lr_error *error);
 
 /* pack_vertices.c: the vertices of the meshes that are shown and have more than positions, those of
  * meshes with one user in world space. vertex_rows[i] becomes where mesh i's begin. False when

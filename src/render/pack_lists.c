@@ -11,6 +11,7 @@
 /* Up to so many bounded primitives, and no mesh, every ray tests the balls of all of them. */
 #define UNSORTED_MAX 32
 
+#define CANDIDATE_COST 2.5
 #define LEAF_SIZE 2
 #define TESTS_IN_TREES 48
 
@@ -198,6 +199,28 @@ static bool pack_balls(const lr_primitive *primitives, const uint32_t *sorted,
     return fits;
 }
 
+/* Whether rays do better to test all bounded primitives than to look for those whose balls they
+ * meet first. A ray meets a ball of radius r in a scene of radius R with a probability of about
+ * r^2 / R^2; a test that is looked for costs as much as CANDIDATE_COST of the others. */
+static bool are_few(const lr_primitive *primitives, const uint32_t *sorted, uint32_t count)
+{
+    double center[3] = {0}, radius2 = 0, met = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const vec4 *ball = &primitives[sorted[i]].ball;
+        center[0] += ball->x / (double)count;
+        center[1] += ball->y / (double)count;
+        center[2] += ball->z / (double)count;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        const vec4 *ball = &primitives[sorted[i]].ball;
+        double x = ball->x - center[0], y = ball->y - center[1], z = ball->z - center[2];
+        radius2 = fmax(radius2, x * x + y * y + z * z + ball->w);
+    }
+    for (uint32_t i = 0; i < count; i++)
+        met += primitives[sorted[i]].ball.w / radius2;
+    return met * CANDIDATE_COST >= count;
+}
+
 static lr_status pack_sorted(const lr_primitive *primitives, const uint32_t *sorted,
                              const uint32_t *counts, const lr_bvh **trees, lr_packed_scene *packed,
                              lr_error *error)
@@ -224,8 +247,12 @@ static lr_status pack_sorted(const lr_primitive *primitives, const uint32_t *sor
             lists[kind]->nodes = lr_pack_tree(packed, trees[kind], lists[kind]->begin);
             fits = lists[kind]->nodes != UINT32_MAX;
         }
-    if (fits && !packed->constants[LR_SPEC_TREES])
+    if (fits && !packed->constants[LR_SPEC_TREES]) {
+        packed->constants[LR_SPEC_FEW] = packed->constants[LR_SPEC_PATH] &&
+                                         !packed->constants[LR_SPEC_TRANSPARENT] &&
+                                         are_few(primitives, sorted, frame->bounded);
         fits = pack_balls(primitives, sorted, packed);
+    }
     if (!fits)
         return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's objects");
     return LR_OK;

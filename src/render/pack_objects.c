@@ -172,7 +172,8 @@ static lr_status pack_drafts(const lr_scene *scene, drafts *d, lr_packed_scene *
     for (uint32_t i = 0; i < count; i++)
         if (!pack_object_record(scene, i, d, packed))
             return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's objects");
-    return LR_OK;
+    bool paths = packed->constants[LR_SPEC_PATH];
+    return paths ? lr_pack_emitters(scene, d->primitives, packed, error) : LR_OK;
 }
 
 lr_status lr_pack_objects(const lr_scene *scene, lr_packed_scene *packed, lr_error *error)

@@ -78,6 +78,11 @@ bool lr_scene_add_note(lr_scene_builder *builder, const char *format, ...)
     return true;
 }
 
+bool lr_light_is_soft(const lr_light *light)
+{
+    return light->kind == LR_LIGHT_DIRECTIONAL ? light->angle > 0 : light->radius > 0;
+}
+
 lr_light lr_default_light(const lr_camera *camera)
 {
     lr_vec3 forward = lr_vec3_normalize(lr_vec3_sub(camera->to, camera->from));

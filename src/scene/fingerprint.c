@@ -76,6 +76,9 @@ static void put_surroundings(hasher *h, const lr_scene *scene)
     put_number(h, scene->image.min_weight);
     put_number(h, scene->image.exposure);
     put_count(h, scene->image.integrator);
+    put_count(h, scene->image.filter);
+    put_count(h, scene->image.tone);
+    put_number(h, scene->image.white);
     put_vector(h, scene->ambient);
     put_vector(h, scene->background[0]);
     put_vector(h, scene->background[1]);
@@ -91,6 +94,12 @@ static void put_camera(hasher *h, const lr_camera *camera)
     put_vector(h, camera->up);
     put_number(h, camera->fov);
     put_count(h, camera->fov_to_centers);
+    put_count(h, camera->projection);
+    put_number(h, camera->height);
+    put_number(h, camera->aperture);
+    put_number(h, camera->focus);
+    put_count(h, camera->blades);
+    put_number(h, camera->blade_rotation);
 }
 
 static void put_light(hasher *h, const lr_light *light)
@@ -103,6 +112,7 @@ static void put_light(hasher *h, const lr_light *light)
     put_vector(h, light->direction);
     put_number(h, light->angle);
     put_number(h, light->inner);
+    put_number(h, light->radius);
     put_count(h, light->shadows);
 }
 
@@ -127,6 +137,7 @@ static void put_material(hasher *h, const lr_material *m)
     put_count(h, (uint32_t)m->priority);
     put_number(h, m->alpha_cutoff);
     put_count(h, m->one_sided);
+    put_count(h, m->emits);
 }
 
 static void put_shape(hasher *h, const lr_object *object)

@@ -66,6 +66,7 @@ typedef struct lr_pattern {
 
 typedef enum lr_highlight { LR_HIGHLIGHT_BLINN, LR_HIGHLIGHT_PHONG } lr_highlight;
 
+typedef enum lr_emits { LR_EMITS_BOTH, LR_EMITS_FRONT } lr_emits;
 /* What a material is made of, for paths. The fields of the classic shading are then an
  * approximation (approximate.c). */
 typedef enum lr_model {
@@ -82,7 +83,8 @@ typedef struct lr_material {
     uint32_t line;
     lr_pattern color;
     lr_color ambient, diffuse, specular, reflect, transmit; /* defaults already filled in */
-    lr_color emission; /* light that the surface sends out by itself, seen but lighting nothing */
+    lr_color emission; /* radiance that the surface sends out by itself; only paths are lit by it */
+    lr_emits emits;    /* front: where the normal points */
     double shininess;  /* 0..1e6 */
     lr_highlight highlight;
     double ior; /* 0.01..100 */
@@ -160,10 +162,14 @@ typedef struct lr_light {
     double falloff;    /* exponent of 1/distance; 0..16; 0 for directional */
     lr_vec3 position;  /* point, spot */
     lr_vec3 direction; /* directional, spot: the way the light travels; not zero */
-    double angle;      /* spot: from the axis to the edge, 0 < angle <= 90 */
+    double angle;      /* spot: from the axis to the edge, 0 < angle <= 90; directional: that it
+                          fills as seen from the scene, 0..180, for paths */
+    double radius;     /* point, spot: of the ball that shines, for paths; 0: a point */
     double inner;      /* spot: from the axis to where the light begins to fade, <= angle */
     bool shadows;
 } lr_light;
+
+typedef enum lr_projection { LR_PERSPECTIVE, LR_ORTHOGRAPHIC, LR_PANORAMA } lr_projection;
 
 typedef struct lr_camera {
     char *name; /* NULL for the only one */
@@ -171,6 +177,12 @@ typedef struct lr_camera {
     lr_vec3 from, to, up; /* from != to, up not along the view */
     double fov;           /* vertical, 0 < fov < 180 */
     bool fov_to_centers;  /* fov ends at the centres of the outer rows of pixels, as in NFF */
+    lr_projection projection;
+    double height;   /* orthographic: of the picture; 0: what fov shows where `to` is */
+    double aperture; /* diameter of the lens; 0: a pinhole, as all but perspective cameras are */
+    double focus;    /* distance along the view that is sharp; 0: that of `to` */
+    uint32_t blades; /* corners of the aperture, 3..32; 0: round */
+    double blade_rotation; /* of the corner that else points up, clockwise in the picture */
 } lr_camera;
 
 struct lr_part; /* part.h */
@@ -208,11 +220,17 @@ struct lr_scene {
         double min_weight; /* 0..1 */
         double exposure;   /* stops, -64..64 */
         enum { LR_SCENE_WHITTED, LR_SCENE_PATH } integrator;
+        enum { LR_SCENE_BOX, LR_SCENE_TENT, LR_SCENE_BLACKMAN_HARRIS } filter;
+        lr_tone tone;
+        double white; /* kelvin, LR_WHITE_MIN..LR_WHITE_MAX; 0: off */
     } image;
 };
 
 /* As the scene language calls it. */
 const char *lr_object_kind_name(lr_object_kind kind);
+
+/* Whether it fills more than a point or a single direction. */
+bool lr_light_is_soft(const lr_light *light);
 
 /* The light of a scene that names none: from above and to the left of the camera. */
 lr_light lr_default_light(const lr_camera *camera);

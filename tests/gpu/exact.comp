@@ -35,6 +35,8 @@ void main()
         result = vec4(ex_cross(a.xyz, b.xyz), ex_dot(a.xyz, b.xyz));
     else if (which == 9u)
         result.xyz = ex_mix(a.xyz, b.xyz, b.w);
+    else if (which == 10u)
+        result.xy = ex_cos_sin_turns(a.x);
     else
         result.x = ex_is_finite(a.xxx) ? 1.0 : 0.0;
     found[i] = result;

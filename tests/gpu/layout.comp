@@ -25,6 +25,9 @@ layout(std430, set = 0, binding = LR_BIND_COUNT) readonly buffer RecordBlock
     gpu_bsdf some_bsdf[2];
     gpu_texture some_texture[2];
     gpu_light some_light[2];
+    gpu_emitter some_emitter[2];
+    gpu_choice some_choice[2];
+    gpu_object_emitter some_object_emitter[2];
     gpu_ray some_ray[2];
     gpu_hit some_hit[2];
     gpu_shadow_ray some_shadow_ray[2];
@@ -118,7 +121,7 @@ void put_light(gpu_light x)
 {
     put_vec3(x.position); put(floatBitsToUint(x.half_falloff)); put_vec3(x.color); put(x.flags);
     put_vec3(x.direction); put(floatBitsToUint(x.cos_angle)); put(floatBitsToUint(x.cos_scale));
-    put(x.unused0); put(x.unused1); put(x.unused2);
+    put(floatBitsToUint(x.radius)); put(floatBitsToUint(x.spread)); put(x.unused);
 }
 
 void put_ray(gpu_ray x)
@@ -191,7 +194,15 @@ void main()
     put(floatBitsToUint(frame.reach)); put(frame.corners); put_list(frame.instances);
     put_list(frame.triangles); put_vec3(frame.cells_from); put(frame.inspect);
     put_vec3(frame.inv_cell); put(floatBitsToUint(frame.inspect_scale));
-    put(frame.bsdfs); put(frame.albedo); put(frame.glass_albedo); put(frame.unused);
+    put(frame.choices); put(frame.object_emitters); put(frame.choice_shift);
+    put(frame.unused_emitters);
+    put_vec3(frame.lens.right); put(floatBitsToUint(frame.lens.inv_focus)); put_vec3(frame.lens.up);
+    put(frame.lens.kind); put_vec3(frame.lens.origin_step);
+    put(floatBitsToUint(frame.lens.blade_turns)); put_vec3(frame.lens.forward_step);
+    put(floatBitsToUint(frame.lens.inv_blades)); put_vec3(frame.lens.right_step);
+    put(floatBitsToUint(frame.lens.turns_across)); put_vec3(frame.lens.down_step);
+    put(floatBitsToUint(frame.lens.turns_down));
+    put(frame.bsdfs); put(frame.albedo); put(frame.glass_albedo); put(frame.unused_bsdfs);
     put(work.tile_x); put(work.tile_y); put(work.tile_width); put(work.tile_height);
     put(work.first_sample); put(work.count); put(work.first); put(work.light);
     put(work.light_count); put(work.first_lights); put(work.shadow_room);

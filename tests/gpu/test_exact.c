@@ -11,7 +11,7 @@ typedef struct item {
     vec4 a, b;
 } item;
 
-enum { RCP, DIV, RSQRT, SQRT, LOG2, EXP2, POW, LENGTH, DOT, MIX, IS_FINITE };
+enum { RCP, DIV, RSQRT, SQRT, LOG2, EXP2, POW, LENGTH, DOT, MIX, COS_SIN_TURNS, IS_FINITE };
 
 static item given[COUNT];
 static vec4 found[COUNT];
@@ -245,6 +245,33 @@ static void test_mix(void **state)
     }
 }
 
+static void test_cos_sin_turns(void **state)
+{
+    const double tau = 6.283185307179586476925287;
+    uint32_t seed = 11;
+    for (uint32_t i = 0; i < COUNT; i++)
+        given[i].a.x = i % 4 == 0   ? random_between(&seed, -1048576, 1048576)
+                       : i % 4 == 1 ? random_sign(&seed) * random_magnitude(&seed, -100, 0)
+                                    : random_between(&seed, -1, 1);
+    for (uint32_t i = 0; i < 64; i++) /* the quarters' ends and middles, and right beside them */
+        given[i].a.x = nextafterf(((float)(i / 2) - 16) / 8, i % 2 ? INFINITY : -INFINITY);
+    for (uint32_t i = 64; i < 128; i++)
+        given[i].a.x = ((float)i - 96) / 4;
+    run(state, COS_SIN_TURNS);
+    for (uint32_t i = 64; i < 128; i++) {
+        const float quarters[] = {1, 0, -1, 0};
+        assert_true(found[i].x == quarters[i % 4] && found[i].y == quarters[(i + 3) % 4]);
+    }
+    double worst = 0;
+    for (uint32_t i = 0; i < COUNT; i++) {
+        double angle = tau * fmod(given[i].a.x, 1);
+        worst = fmax(worst, fabs(found[i].x - cos(angle)));
+        worst = fmax(worst, fabs(found[i].y - sin(angle)));
+    }
+    print_message("ex_cos_sin_turns: %.3g\n", worst);
+    assert_true(worst < 1.2e-7);
+}
+
 static void test_is_finite(void **state)
 {
     const float values[] = {0,        -0.0f,     1e-45f, 3.4028235e38f, -3.4028235e38f,
@@ -260,12 +287,19 @@ static void test_is_finite(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rcp),           cmocka_unit_test(test_div),
-        cmocka_unit_test(test_rsqrt),         cmocka_unit_test(test_sqrt),
-        cmocka_unit_test(test_log2),          cmocka_unit_test(test_exp2),
-        cmocka_unit_test(test_pow),           cmocka_unit_test(test_length_and_normalize),
-        cmocka_unit_test(test_dot_and_cross), cmocka_unit_test(test_mix),
-        cmocka_unit_test(test_is_finite),     cmocka_unit_test(test_validation_is_silent),
+        cmocka_unit_test(test_rcp),
+        cmocka_unit_test(test_div),
+        cmocka_unit_test(test_rsqrt),
+        cmocka_unit_test(test_sqrt),
+        cmocka_unit_test(test_log2),
+        cmocka_unit_test(test_exp2),
+        cmocka_unit_test(test_pow),
+        cmocka_unit_test(test_length_and_normalize),
+        cmocka_unit_test(test_dot_and_cross),
+        cmocka_unit_test(test_mix),
+        cmocka_unit_test(test_cos_sin_turns),
+        cmocka_unit_test(test_is_finite),
+        cmocka_unit_test(test_validation_is_silent),
     };
     return cmocka_run_group_tests(tests, setup_device, NULL);
 }
