@@ -131,8 +131,15 @@ void main()
     bool scatters = solid_there && !last;
     bool deepest = depth >= frame.depth;
     light_sample light = sample_light_at(origin, choices.x, sample_pair(key, pair + pair_light_point));
-    bsdf_value towards = evaluate_bsdf(b, wo, to_local(around, light.wi));
+    vec3 local_wi = to_local(around, light.wi);
+    bsdf_value towards = evaluate_bsdf(b, wo, local_wi);
     bool in_front = ex_dot(light.wi, here.n) > 0.0;
+    if (has_rough_glass) {
+        // Light from behind comes through; interpolated normals must not take one side for the other.
+        bool behind = !in_front && local_wi.z < 0.0;
+        origin = mix(origin, s.position - here.n * s.offset, bvec3(behind));
+        in_front = behind || (in_front && local_wi.z > 0.0);
+    }
     vec3 value = weight * towards.f * light.value * power_heuristic(light.pdf, towards.pdf);
     bool reaches = scatters && in_front && any(greaterThanEqual(value, vec3(LR_FILM_STEP)));
     value = arriving(origin, light, value, ray.pixel, reaches);
