@@ -51,6 +51,7 @@ layout(constant_id = LR_SPEC_SPHERE_EMITTERS) const bool has_sphere_emitters = t
 layout(constant_id = LR_SPEC_ENVIRONMENT) const bool has_environment = true;
 layout(constant_id = LR_SPEC_SUN) const bool has_sun = true;
 layout(constant_id = LR_SPEC_EMITS_FRONT) const bool has_emits_front = true;
+layout(constant_id = LR_SPEC_CAMERA) const bool has_lens = true;
 
 layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame; };
 layout(set = 0, binding = LR_BIND_SCENE_TEXEL) uniform usamplerBuffer scene_texels;

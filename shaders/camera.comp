@@ -23,11 +23,17 @@ void main()
     uvec2 pixel = uvec2(work.tile_x, work.tile_y) + at * work.step;
     uint number = work.first_sample + gl_WorkGroupID.z;
     path_key key = key_of(pixel, frame.seed, number);
-    vec2 position = vec2(pixel);
+    vec2 within;
     if (has_paths)
-        position = position + sample_pair(key, pair_pixel);
+        within = sample_pair(key, pair_pixel);
     else
-        position = position + sample_position(pixel, number);
+        within = sample_position(pixel, number);
+    camera_ray ray;
+    if (has_lens)
+        ray = lens_ray(vec2(pixel) + filtered_position(within), sample_pair(key, pair_lens),
+                       sample_pair(key, pair_time).x);
+    else
+        ray = pinhole_ray(vec2(pixel) + within);
     uint in_film = work.film_first + at.y * work.step * work.film_pitch + at.x * work.step;
     // Squares of 8 x 8 pixels one after the other, those at the tile's edges smaller, so that rays that
     // are neighbours in the queue are so in the picture.
@@ -36,7 +42,7 @@ void main()
     uint slot = gl_WorkGroupID.z * (work.tile_width * work.tile_height) + corner.y * work.tile_width +
                 corner.x * size.y + inside.y * size.x + inside.x;
     atomicAdd(film[in_film * uint(LR_FILM_WORDS) + uint(LR_FILM_SAMPLES)], 1u);
-    store_ray(slot, gpu_ray(frame.origin, in_film, camera_direction(position),
+    store_ray(slot, gpu_ray(ray.origin, in_film, ray.direction,
                             LR_KIND_PRIMARY << LR_STATE_KIND_SHIFT, vec3(1.0), 0u, frame.inside0,
                             frame.inside1, frame.inside2, frame.inside3));
     if (has_paths)

@@ -91,9 +91,10 @@ typedef struct vec4 {
 #define LR_SPEC_TRIANGLE_EMITTERS 42 /* or triangles */
 #define LR_SPEC_SPHERE_EMITTERS 43
 #define LR_SPEC_EMITS_FRONT 44 /* some surface shines on one side alone */
-#define LR_SPEC_ENVIRONMENT 45 /* the background is a picture or the sky, */
-#define LR_SPEC_SUN 46         /* with a sun */
-#define LR_SPEC_COUNT 47
+#define LR_SPEC_CAMERA 45 /* some camera is more than a pinhole, or the filter than a box */
+#define LR_SPEC_ENVIRONMENT 46 /* the background is a picture or the sky, */
+#define LR_SPEC_SUN 47         /* with a sun */
+#define LR_SPEC_COUNT 48
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -455,12 +456,39 @@ typedef struct gpu_list gpu_list;
 #endif
 
 /* ---- What is the same for the whole picture ---- */
+#define LR_GPU_ORTHOGRAPHIC 1u
+#define LR_GPU_PANORAMA 2u
+#define LR_GPU_FILTER_TENT 4u
+#define LR_GPU_FILTER_BLACKMAN_HARRIS 8u
+#define LR_GPU_BLADES_SHIFT 8
+
+/* What makes a camera more than a pinhole with a box filter: LR_SPEC_CAMERA. */
+struct gpu_lens {
+    vec3 right; /* from the middle of the lens to its edge */
+    float inv_focus;
+    vec3 up;
+    uint kind;          /* LR_GPU_ORTHOGRAPHIC, ..., the number of blades */
+    vec3 origin_step;   /* by how much the frame's vectors change while the shutter is open */
+    float blade_turns;  /* from the right, counter-clockwise, to the first corner */
+    vec3 forward_step;
+    float inv_blades;
+    vec3 right_step;
+    float turns_across; /* a pixel of a panorama */
+    vec3 down_step;
+    float turns_down;
+};
+LR_ROWS(gpu_lens, 6)
+#ifdef __STDC__
+typedef struct gpu_lens gpu_lens;
+#endif
+
 struct gpu_frame {
     vec3 origin;      /* camera */
     float half_width; /* of the picture, in pixels */
     vec3 forward;
     float half_height;
-    vec3 pixel_right; /* one pixel to the right, at distance 1 along forward */
+    vec3 pixel_right; /* one pixel to the right: at distance 1 along forward; orthographic:
+                         anywhere; panorama: of unit length */
     float inv_samples;
     vec3 pixel_down;
     uint samples;
@@ -501,8 +529,9 @@ struct gpu_frame {
     uint object_emitters; /* and gpu_object_emitter */
     uint choice_shift;    /* LR_CHOICE_BITS - log2 of how many choices there are */
     uint environment;     /* row of the gpu_environment */
+    gpu_lens lens;
 };
-LR_ROWS(gpu_frame, 23)
+LR_ROWS(gpu_frame, 29)
 #define LR_GPU_INSPECT_NORMAL 1u
 #define LR_GPU_INSPECT_DEPTH 2u
 #define LR_GPU_INSPECT_OBJECT 3u

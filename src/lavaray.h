@@ -86,9 +86,18 @@ lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_s
                          char **report, lr_error *error);
 void lr_scene_destroy(lr_scene *scene);
 
+/* How light becomes a colour that a screen can show: as it is, clipped at 1; by Reinhard's formula
+ * for each channel, with 4 as white; as in ACES 1.0, by Stephen Hill's fit; as in AgX. */
+typedef enum lr_tone { LR_TONE_NONE, LR_TONE_REINHARD, LR_TONE_ACES, LR_TONE_AGX } lr_tone;
+
+/* As flags and the scene language call it; NULL: there is no such tone map. */
+const char *lr_tone_name(lr_tone tone);
+
 typedef struct lr_scene_info {
     uint32_t objects, lights, materials, cameras;
     float exposure;  /* image.exposure, in stops */
+    lr_tone tone;    /* image.tone */
+    float white;     /* image.white, in kelvin; 0: off */
     char sha256[65]; /* of the file, as 64 hexadecimal digits */
     uint32_t meshes;
     uint64_t triangles;       /* of the meshes, each counted once */
@@ -233,11 +242,16 @@ typedef struct lr_text {
     const char *key, *value;
 } lr_text;
 
+#define LR_WHITE_MIN 1667 /* kelvin */
+#define LR_WHITE_MAX 25000
+
 typedef struct lr_encoding {
     lr_format format;
     uint32_t maxval; /* PPM: 1..65535, PNG: 255 or 65535; 0 means 255. PFM and EXR have none. */
-    lr_transfer transfer; /* PFM and EXR are always linear */
+    lr_transfer transfer; /* PFM and EXR are always linear, */
+    lr_tone tone;         /* ... and never tone-mapped */
     float exposure;       /* in stops; the pixels are multiplied by 2^exposure */
+    float white;          /* kelvin: light of this colour temperature becomes white; 0: off */
     bool half;            /* EXR: 16-bit floats, those above 65504 become 65504; otherwise 32-bit */
     const lr_text *texts; /* PNG: text chunks, EXR: string attributes; PPM and PFM carry none */
     uint32_t text_count;
@@ -260,6 +274,15 @@ typedef enum lr_integrator {
     LR_INTEGRATOR_PATH,    /* all ways of light, by chance: Kajiya's paths, 1986 */
 } lr_integrator;
 
+/* How samples weigh by their distance from the middle of the pixel: in each direction up to 0.5, 1 or
+ * 1.5 pixels away. */
+typedef enum lr_filter {
+    LR_FILTER_DEFAULT, /* as the scene says */
+    LR_FILTER_BOX,
+    LR_FILTER_TENT,
+    LR_FILTER_BLACKMAN_HARRIS,
+} lr_filter;
+
 typedef struct lr_render_options {
     uint32_t width, height; /* 0: as the scene says */
     uint32_t samples;       /* per pixel; 0: as the scene says */
@@ -269,6 +292,7 @@ typedef struct lr_render_options {
     bool has_seed;
     const char *camera; /* NULL: the scene's first */
     lr_integrator integrator;
+    lr_filter filter;
     struct {
         uint32_t x, y, width, height; /* of the picture; width 0: all of it */
     } crop;
@@ -290,7 +314,7 @@ typedef struct lr_render_stats {
     lr_integrator integrator;
     struct {
         uint64_t traced, hit;
-    } primary, reflected, refracted, shadow;
+    } primary, reflected, refracted, shadow, bounced; /* bounced: the later rays of paths */
     uint64_t passed;          /* crossings of surfaces hidden inside another medium */
     uint64_t dropped_depth;   /* rays not traced because the depth was used up */
     uint64_t dropped_weight;  /* ... because their weight was below min_weight */

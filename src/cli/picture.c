@@ -9,6 +9,15 @@ static lr_integrator integrator_named(const char *name)
     return strcmp(name, "path") == 0 ? LR_INTEGRATOR_PATH : LR_INTEGRATOR_WHITTED;
 }
 
+static lr_filter filter_named(const char *name)
+{
+    if (!name)
+        return LR_FILTER_DEFAULT;
+    return strcmp(name, "box") == 0    ? LR_FILTER_BOX
+           : strcmp(name, "tent") == 0 ? LR_FILTER_TENT
+                                       : LR_FILTER_BLACKMAN_HARRIS;
+}
+
 lr_render_options picture_options(const picture_values *values)
 {
     const picture_values *v = values;
@@ -22,5 +31,6 @@ lr_render_options picture_options(const picture_values *values)
         .has_seed = v->seed >= 0,
         .camera = v->camera,
         .integrator = integrator_named(v->integrator),
+        .filter = filter_named(v->filter),
     };
 }

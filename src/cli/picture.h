@@ -11,7 +11,7 @@
 typedef struct picture_values {
     option_size size;
     int64_t samples, depth, seed; /* -1: not given */
-    const char *integrator, *camera, *device;
+    const char *integrator, *filter, *camera, *device;
 } picture_values;
 
 #define PICTURE_DEFAULTS                                                                           \
@@ -60,6 +60,13 @@ typedef struct picture_values {
          .help = "whitted: mirrors, glass and direct light; path: all\n"                           \
                  "ways of light, by chance; default: the scene's",                                 \
          .also = "renderer|method"},                                                               \
+        {.name = "filter",                                                                         \
+         .kind = OPTION_CHOICE,                                                                    \
+         .offset = offsetof(type, picture.filter),                                                 \
+         .value = "NAME",                                                                          \
+         .choices = "box|tent|blackman-harris",                                                    \
+         .help = "of pixels: box, tent or blackman-harris; default: the\nscene's",                 \
+         .also = "pixel-filter|reconstruction"},                                                   \
         {.name = "camera",                                                                         \
          .kind = OPTION_TEXT,                                                                      \
          .offset = offsetof(type, picture.camera),                                                 \

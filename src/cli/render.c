@@ -1,5 +1,6 @@
 #include "cli/cli.h"
 #include "cli/load.h"
+#include "cli/look.h"
 #include "cli/output.h"
 #include "cli/picture.h"
 #include "cli/progress.h"
@@ -20,6 +21,7 @@ typedef struct values {
     option_rectangle crop;
     int64_t tile, chunk;
     load_values load;
+    look_values look;
     bool half, storage_loads, quiet, verbose;
 } values;
 
@@ -70,6 +72,7 @@ static const option options[] = {
      .min = -64,
      .max = 64,
      .help = "stops, -64 to 64; 1 is twice as bright;\ndefault: the scene's"},
+    LOOK_OPTIONS(values),
     {.name = "crop",
      .kind = OPTION_RECTANGLE,
      AT(crop),
@@ -160,6 +163,9 @@ static int check_values(const command *self, const values *v, const char *scene,
     if (floats && v->transfer && strcmp(v->transfer, "srgb") == 0) {
         return wrong_usage(self, "--transfer srgb is not for PFM and EXR, which are always linear");
     }
+    if (check_look(self, &v->look, encoding->format) != EXIT_FINE) {
+        return EXIT_USAGE;
+    }
     if (v->half && encoding->format != LR_FORMAT_EXR) {
         return wrong_usage(self, "--half is for EXR alone");
     }
@@ -209,9 +215,10 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
         text[0] = '\0';
         return;
     }
-    fprintf(out, "%ux%u, %u sample%s, depth %u, seed %u", (unsigned)s->width, (unsigned)s->height,
-            (unsigned)s->samples, s->samples == 1 ? "" : "s", (unsigned)s->depth,
-            (unsigned)s->seed);
+    fprintf(out, "%s%ux%u, %u sample%s, depth %u, seed %u",
+            s->integrator == LR_INTEGRATOR_PATH ? "paths, " : "", (unsigned)s->width,
+            (unsigned)s->height, (unsigned)s->samples, s->samples == 1 ? "" : "s",
+            (unsigned)s->depth, (unsigned)s->seed);
     if (v->crop.width) {
         fprintf(out, ", crop %u,%u,%u,%u", (unsigned)v->crop.x, (unsigned)v->crop.y,
                 (unsigned)v->crop.width, (unsigned)v->crop.height);
@@ -219,9 +226,13 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
     if (v->picture.camera) {
         fprintf(out, ", camera %.200s", v->picture.camera);
     }
+    if (v->picture.filter) {
+        fprintf(out, ", filter %s", v->picture.filter);
+    }
     if (encoding->exposure != 0) {
         fprintf(out, ", exposure %.7g", (double)encoding->exposure);
     }
+    describe_look(encoding, out);
     if (encoding->format == LR_FORMAT_PNG && encoding->transfer == LR_TRANSFER_LINEAR) {
         fputs(", linear", out);
     }
@@ -329,6 +340,9 @@ static int run(const command *self, int argc, char **argv)
     encoding.transfer =
         v.transfer && strcmp(v.transfer, "linear") == 0 ? LR_TRANSFER_LINEAR : LR_TRANSFER_SRGB;
     encoding.half = v.half;
+    choose_look(&v.look, &scene_info, &encoding);
+    record.tone = lr_tone_name(encoding.tone);
+    record.white = encoding.white;
 
     progress_phase(&p, "opening device");
     double device_start = seconds_now();

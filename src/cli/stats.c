@@ -15,7 +15,8 @@
 
 static uint64_t rays_traced(const lr_render_stats *s)
 {
-    return s->primary.traced + s->reflected.traced + s->refracted.traced + s->shadow.traced;
+    return s->primary.traced + s->reflected.traced + s->refracted.traced + s->bounced.traced +
+           s->shadow.traced;
 }
 
 static double rays_per_second(const lr_render_stats *s)
@@ -73,6 +74,7 @@ void print_record(const render_record *r)
     print_rays("primary", s->primary.traced, s->primary.hit);
     print_rays("reflected", s->reflected.traced, s->reflected.hit);
     print_rays("refracted", s->refracted.traced, s->refracted.hit);
+    print_rays("bounced", s->bounced.traced, s->bounced.hit);
     print_rays("shadow", s->shadow.traced, s->shadow.hit);
     fprintf(stderr, "  %-11s %14" PRIu64 "  %.2f Mray/s\n", "all", rays_traced(s),
             1e-6 * rays_per_second(s));
@@ -129,14 +131,19 @@ static json_t *record_json(const render_record *r)
                   "api_version", format_version(r->device.api_version).text, "software",
                   r->device.software, "exact", r->exact);
     json_t *picture =
-        json_pack("{s:i, s:i, s:[i,i], s:i, s:i, s:I, s:f, s:s}", "width", (int)r->width, "height",
-                  (int)r->height, "full_size", (int)s->width, (int)s->height, "samples",
+        json_pack("{s:i, s:i, s:[i,i], s:s, s:i, s:i, s:I, s:f, s:s, s:s}", "width", (int)r->width,
+                  "height", (int)r->height, "full_size", (int)s->width, (int)s->height,
+                  "integrator", s->integrator == LR_INTEGRATOR_PATH ? "path" : "whitted", "samples",
                   (int)s->samples, "depth", (int)s->depth, "seed", (json_int_t)s->seed, "exposure",
-                  r->exposure, "sha256", s->hash);
+                  r->exposure, "tone", r->tone, "sha256", s->hash);
+    if (r->white != 0) {
+        json_object_set_new(picture, "white", json_real(r->white));
+    }
     json_t *rays = json_pack(
-        "{s:o, s:o, s:o, s:o, s:I}", "primary", rays_json(s->primary.traced, s->primary.hit),
+        "{s:o, s:o, s:o, s:o, s:o, s:I}", "primary", rays_json(s->primary.traced, s->primary.hit),
         "reflected", rays_json(s->reflected.traced, s->reflected.hit), "refracted",
-        rays_json(s->refracted.traced, s->refracted.hit), "shadow",
+        rays_json(s->refracted.traced, s->refracted.hit), "bounced",
+        rays_json(s->bounced.traced, s->bounced.hit), "shadow",
         rays_json(s->shadow.traced, s->shadow.hit), "total", (json_int_t)rays_traced(s));
     json_t *dropped =
         json_pack("{s:I, s:I, s:I}", "depth", (json_int_t)s->dropped_depth, "weight",

@@ -11,6 +11,8 @@ typedef struct render_record {
     const char *scene_hash; /* SHA-256 of its text */
     uint32_t width, height; /* of what was written: the crop's, if there is one */
     double exposure;
+    const char *tone;
+    double white; /* kelvin; 0: off */
     lr_device_info device;
     bool exact;
     lr_render_stats stats;

@@ -101,6 +101,13 @@ static int show(values *v, const char *path)
     progress_phase(&p, "reading scene");
     int code = load_scene(path, &v->load, v->quiet, &scene, &p);
     progress_clear(&p);
+    if (code == EXIT_FINE && !v->quiet) {
+        lr_scene_info info;
+        lr_scene_get_info(scene, &info);
+        if (info.tone != LR_TONE_NONE || info.white != 0)
+            print_warning("note: the window shows light without the scene's tone map and white "
+                          "balance");
+    }
     if (code == EXIT_FINE && interrupted()) {
         lr_scene_destroy(scene);
         code = EXIT_INTERRUPTED;

@@ -14,9 +14,21 @@ float lr_exposed(float value, double scale)
     return scale == 1 ? value : (float)(value * scale);
 }
 
-float image_exposed(const image_encoder *encoder, float value)
+void image_adjust(const image_encoder *encoder, const float in[3], float out[3])
 {
-    return lr_exposed(value, encoder->scale);
+    const image_encoder *e = encoder;
+    if (!e->balanced && e->tone.kind == LR_TONE_NONE) {
+        for (int i = 0; i < 3; i++)
+            out[i] = lr_exposed(in[i], e->scale);
+        return;
+    }
+    lr_vec3 light = {in[0] * e->scale, in[1] * e->scale, in[2] * e->scale};
+    if (e->balanced)
+        light = lr_transform_vector(&e->balance, light);
+    light = image_tone_apply(&e->tone, light);
+    out[0] = (float)light.x;
+    out[1] = (float)light.y;
+    out[2] = (float)light.z;
 }
 
 bool image_buffer_write(image_buffer *buffer, size_t offset, const void *bytes, size_t size)
@@ -45,11 +57,15 @@ void image_encode_row(const image_encoder *encoder, uint32_t row, unsigned char 
 {
     size_t count = 3 * (size_t)encoder->picture->width;
     const float *in = encoder->picture->pixels + row * count;
-    for (size_t i = 0; i < count; i++) {
-        uint32_t value = lr_curve_encode(&encoder->curve, image_exposed(encoder, in[i]));
-        if (encoder->sample_size == 2)
-            *out++ = (unsigned char)(value >> 8);
-        *out++ = (unsigned char)value;
+    for (size_t i = 0; i < count; i += 3) {
+        float pixel[3];
+        image_adjust(encoder, in + i, pixel);
+        for (int k = 0; k < 3; k++) {
+            uint32_t value = lr_curve_encode(&encoder->curve, pixel[k]);
+            if (encoder->sample_size == 2)
+                *out++ = (unsigned char)(value >> 8);
+            *out++ = (unsigned char)value;
+        }
     }
 }
 
@@ -91,6 +107,15 @@ static lr_status encode_ppm(const image_encoder *encoder, unsigned char **bytes,
     return LR_OK;
 }
 
+static unsigned char *put_float(unsigned char *out, float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    for (int shift = 0; shift < 32; shift += 8)
+        *out++ = (unsigned char)(bits >> shift);
+    return out;
+}
+
 /* PFM puts the bottom row first, and a negative scale says little-endian. */
 static lr_status encode_pfm(const image_encoder *encoder, unsigned char **bytes, size_t *size,
                             lr_error *error)
@@ -101,12 +126,11 @@ static lr_status encode_pfm(const image_encoder *encoder, unsigned char **bytes,
         return status;
     size_t count = 3 * (size_t)encoder->picture->width;
     for (uint32_t y = encoder->picture->height; y-- > 0;)
-        for (size_t i = 0; i < count; i++) {
-            float value = image_exposed(encoder, encoder->picture->pixels[y * count + i]);
-            uint32_t bits;
-            memcpy(&bits, &value, sizeof bits);
-            for (int shift = 0; shift < 32; shift += 8)
-                *out++ = (unsigned char)(bits >> shift);
+        for (size_t i = 0; i < count; i += 3) {
+            float pixel[3];
+            image_adjust(encoder, encoder->picture->pixels + y * count + i, pixel);
+            for (int k = 0; k < 3; k++)
+                out = put_float(out, pixel[k]);
         }
     return LR_OK;
 }
@@ -133,6 +157,10 @@ static lr_status check(const lr_picture *picture, const lr_encoding *encoding, u
     if (!(encoding->exposure >= -EXPOSURE_LIMIT && encoding->exposure <= EXPOSURE_LIMIT))
         return lr_fail(error, LR_ERROR_ARGUMENT, "exposure is %g stops; expected -%g to %g",
                        (double)encoding->exposure, (double)EXPOSURE_LIMIT, (double)EXPOSURE_LIMIT);
+    if (encoding->white != 0 &&
+        !(encoding->white >= LR_WHITE_MIN && encoding->white <= LR_WHITE_MAX))
+        return lr_fail(error, LR_ERROR_ARGUMENT, "white is %g K; expected %d to %d",
+                       (double)encoding->white, LR_WHITE_MIN, LR_WHITE_MAX);
     for (uint32_t i = 0; i < encoding->text_count; i++)
         if (!is_key(encoding->texts[i].key))
             return lr_fail(
@@ -160,14 +188,19 @@ lr_status lr_picture_encode(const lr_picture *picture, const lr_encoding *encodi
         .encoding = encoding,
         .scale = lr_exp2(encoding->exposure),
         .sample_size = maxval < 256 ? 1 : 2,
+        .balanced = encoding->white != 0,
     };
+    if (encoder.balanced)
+        encoder.balance = image_white_balance(encoding->white);
     if (encoding->format == LR_FORMAT_PFM)
         return encode_pfm(&encoder, bytes, size, error);
     if (encoding->format == LR_FORMAT_EXR)
         return image_encode_exr(&encoder, bytes, size, error);
-    status = lr_curve_create(&encoder.curve, encoding->transfer, maxval, error);
+    status = image_tone_create(&encoder.tone, encoding->tone, error);
+    if (status == LR_OK)
+        status = lr_curve_create(&encoder.curve, encoding->transfer, maxval, error);
     if (status != LR_OK)
-        return status;
+        goto done;
     switch (encoding->format) {
     case LR_FORMAT_PPM:
         status = encode_ppm(&encoder, bytes, size, error);
@@ -179,6 +212,8 @@ lr_status lr_picture_encode(const lr_picture *picture, const lr_encoding *encodi
         status =
             lr_fail(error, LR_ERROR_ARGUMENT, "unknown image format %d", (int)encoding->format);
     }
+done:
     lr_curve_free(&encoder.curve);
+    image_tone_free(&encoder.tone);
     return status;
 }

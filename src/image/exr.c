@@ -100,11 +100,15 @@ static void convert_rows(const exr_output *output, const exr_chunk_info_t *chunk
     const float *in = encoder->picture->pixels + (size_t)chunk->start_y * row;
     float *floats = output->rows;
     uint16_t *halves = output->rows;
-    for (size_t i = 0; i < count; i++)
-        if (encoder->encoding->half)
-            halves[i] = image_half(image_exposed(encoder, in[i]));
-        else
-            floats[i] = image_exposed(encoder, in[i]);
+    for (size_t i = 0; i < count; i += 3) {
+        float pixel[3];
+        image_adjust(encoder, in + i, pixel);
+        for (int k = 0; k < 3; k++)
+            if (encoder->encoding->half)
+                halves[i + k] = image_half(pixel[k]);
+            else
+                floats[i + k] = pixel[k];
+    }
 }
 
 static exr_result_t write_chunk(exr_output *output, const exr_chunk_info_t *chunk)

@@ -3,13 +3,17 @@
 #define LR_IMAGE_INTERNAL_H
 
 #include "image/image.h"
+#include "image/tone.h"
 
 /* Pixels on their way to integer samples. */
 typedef struct image_encoder {
     const lr_picture *picture;
     const lr_encoding *encoding;
-    lr_curve curve; /* of formats with integers */
-    double scale;   /* 2^exposure */
+    lr_curve curve;  /* of formats with integers, */
+    image_tone tone; /* ... and theirs */
+    double scale;    /* 2^exposure */
+    bool balanced;
+    lr_transform balance;
     uint32_t
         sample_size; /* bytes: 1, or 2 with the most significant first, as PPM and PNG have it */
 } image_encoder;
@@ -17,8 +21,8 @@ typedef struct image_encoder {
 /* Writes one row of 3 * width samples. */
 void image_encode_row(const image_encoder *encoder, uint32_t row, unsigned char *out);
 
-/* The sample with the exposure applied. */
-float image_exposed(const image_encoder *encoder, float value);
+/* A pixel with white balance, exposure and tone map applied. */
+void image_adjust(const image_encoder *encoder, const float in[3], float out[3]);
 
 /* A file that grows in memory; the bytes are freed with free(). */
 typedef struct image_buffer {

@@ -15,10 +15,12 @@ typedef struct lr_wish {
     uint32_t width, height; /* as far as the window knows; 0: it is not to be seen */
     lr_camera camera;       /* without name */
     uint32_t samples, depth, seed;
+    lr_filter filter; /* that of the options */
     double exposure;
     lr_inspect inspect;
-    uint64_t picture; /* grows whenever another picture is wished for: camera, depth, ... */
-    uint64_t look;    /* ... or the same to be shown in another way */
+    lr_integrator integrator; /* of what is shown as light */
+    uint64_t picture;         /* grows whenever another picture is wished for: camera, depth, ... */
+    uint64_t look;            /* ... or the same to be shown in another way */
 } lr_wish;
 
 /* Pixels to lay over the picture; see lr_display_set_overlay. */

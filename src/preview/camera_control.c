@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "scene/bounds.h"
+#include "scene/camera.h"
 
 #define DEGREES 57.295779513082321 /* in a radian */
 
@@ -59,12 +59,9 @@ static frame frame_of(const lr_camera *camera)
     return f;
 }
 
-/* The side of a pixel at distance 1, as lr_pack_scene has it. */
 static double pixel_size(const lr_camera *camera, lr_screen screen)
 {
-    double sine, cosine, rows = screen.height;
-    lr_sincos_degrees(camera->fov / 2, &sine, &cosine);
-    return 2 * sine / cosine / (camera->fov_to_centers && rows > 1 ? rows - 1 : rows);
+    return lr_camera_pixel_size(camera, screen.height);
 }
 
 lr_vec3 lr_camera_point(const lr_camera *camera, lr_screen screen, double x, double y)
@@ -83,7 +80,7 @@ bool lr_camera_project(const lr_camera *camera, lr_screen screen, lr_vec3 a, lr_
     double nearest = f.distance * NEAR_SHARE, pixel = pixel_size(camera, screen);
     lr_vec3 from_eye[2] = {lr_vec3_sub(a, camera->from), lr_vec3_sub(b, camera->from)};
     double depth[2] = {lr_vec3_dot(from_eye[0], forward), lr_vec3_dot(from_eye[1], forward)};
-    if (depth[0] < nearest && depth[1] < nearest)
+    if (camera->projection == LR_PANORAMA || (depth[0] < nearest && depth[1] < nearest))
         return false;
     for (int i = 0; i < 2; i++) {
         lr_vec3 p = from_eye[i];
@@ -93,8 +90,9 @@ bool lr_camera_project(const lr_camera *camera, lr_screen screen, lr_vec3 a, lr_
             p = mix3(p, 1 - share, from_eye[1 - i], share);
             z = nearest;
         }
-        double x = screen.width * 0.5 + lr_vec3_dot(p, f.right) / (z * pixel);
-        double y = screen.height * 0.5 - lr_vec3_dot(p, f.up) / (z * pixel);
+        double side = pixel * (camera->projection == LR_ORTHOGRAPHIC ? f.distance : z);
+        double x = screen.width * 0.5 + lr_vec3_dot(p, f.right) / side;
+        double y = screen.height * 0.5 - lr_vec3_dot(p, f.up) / side;
         ends[2 * i] = clamp(x, -SCREEN_MAX, SCREEN_MAX);
         ends[2 * i + 1] = clamp(y, -SCREEN_MAX, SCREEN_MAX);
     }
@@ -155,6 +153,8 @@ lr_camera lr_camera_zoom(lr_camera camera, double factor, lr_vec3 about)
     lr_camera moved = camera;
     moved.from = lr_vec3_add(about, lr_vec3_scale(lr_vec3_sub(camera.from, about), factor));
     moved.to = lr_vec3_add(about, lr_vec3_scale(lr_vec3_sub(camera.to, about), factor));
+    moved.height *= factor;
+    moved.focus *= factor;
     double distance = lr_vec3_length(lr_vec3_sub(moved.to, moved.from));
     bool too_near = factor < 1 && distance < NEAREST * greatest_coordinate(&moved);
     return factor > 0 && !too_near ? checked(moved, camera) : camera;
@@ -180,6 +180,7 @@ lr_camera lr_camera_focus(lr_camera camera, lr_vec3 point)
     lr_camera moved = camera;
     moved.to = point;
     moved.from = lr_vec3_sub(point, lr_vec3_scale(f.forward, depth));
+    moved.focus = camera.focus > 0 ? depth : 0;
     return depth > 0 ? checked(moved, camera) : camera;
 }
 

@@ -29,7 +29,8 @@ lr_camera lr_camera_orbit(lr_camera camera, double right, double up);
 lr_camera lr_camera_pan(lr_camera camera, lr_screen screen, double x, double y);
 
 /* Scales the distances of eye and focus from a point, which stays where it is seen: with
- * lr_camera_point under the cursor, with `to` in the middle. A factor below 1 goes nearer. */
+ * lr_camera_point under the cursor, with `to` in the middle. A factor below 1 goes nearer. What an
+ * orthographic picture shows is scaled along. */
 lr_camera lr_camera_zoom(lr_camera camera, double factor, lr_vec3 about);
 
 /* Moves eye and focus by metres: to the right, along `up`, along the view. */
@@ -43,8 +44,8 @@ lr_camera lr_camera_look(lr_camera camera, double right, double up);
 double lr_camera_fly_speed(const lr_camera *camera, double size);
 
 /* Makes a point in front of the eye the focus, in the middle of the picture: the eye moves sideways
- * alone, so the direction of the view stays, and what is as far away as the point stays as large.
- */
+ * alone, so the direction of the view stays, and what is as far away as the point stays as large. A
+ * lens is sharp there, too. */
 lr_camera lr_camera_focus(lr_camera camera, lr_vec3 point);
 
 /* Sets the vertical field of view, brought into 1..170 degrees. */

@@ -15,7 +15,7 @@ typedef struct lr_explained_pixel {
     char *text;
     lr_ray_line *lines;
     uint32_t line_count;
-    bool meets; /* its camera ray meets something, */
+    bool meets;  /* its camera ray meets something, */
     lr_vec3 met; /* here */
 } lr_explained_pixel;
 

@@ -127,6 +127,18 @@ static void next_values(lr_view *v)
         lr_view_build(v);
 }
 
+static void next_integrator(lr_view *v)
+{
+    bool paths = v->wish.integrator == LR_INTEGRATOR_PATH;
+    v->wish.integrator = paths ? LR_INTEGRATOR_WHITTED : LR_INTEGRATOR_PATH;
+    lr_view_wish_samples(v);
+    lr_view_say(v,
+                paths ? "ray trees: mirrors, glass and direct light" : "paths: all ways of light");
+    lr_view_wish_picture(v);
+    if (v->wish.inspect == LR_INSPECT_LIGHT)
+        lr_view_build(v);
+}
+
 static void screenshot(lr_view *v)
 {
     lr_board_lock(&v->board);
@@ -181,6 +193,7 @@ static const struct {
     {LR_KEY_RIGHT, deeper, "Left Right", "depth: bounces of light"},
     {LR_KEY_LEFT, shallower, NULL, NULL},
     {'v', next_values, "v", "light, normals, depth, objects, number of rays"},
+    {'i', next_integrator, "i", "integrator: ray trees or paths"},
     {'g', next_device, "g", "next device"},
     {LR_KEY_F12, screenshot, "F12 c", "screenshot"},
     {'c', screenshot, NULL, NULL},

@@ -95,6 +95,7 @@ static lr_status announce(lr_loader *l, const lr_scene *scene, lr_error *error)
     l->news.camera_count = scene->camera_count;
     l->news.samples = scene->image.samples;
     l->news.depth = scene->image.depth;
+    l->news.integrator = (lr_integrator)(scene->image.integrator + 1);
     l->news.seed = scene->image.seed;
     l->news.exposure = scene->image.exposure;
     l->news.size = lr_vec3_length(extent);
@@ -143,8 +144,10 @@ static lr_settings wished_settings(lr_loader *l, lr_camera *camera)
         .samples = wish->samples,
         .depth = wish->depth,
         .seed = wish->seed,
+        .filter = wish->filter,
         .camera = camera,
         .inspect = wish->inspect,
+        .integrator = wish->inspect == LR_INSPECT_LIGHT ? wish->integrator : LR_INTEGRATOR_WHITTED,
         .trees = &l->trees,
     };
 }
@@ -312,6 +315,7 @@ static lr_explained_pixel *explain(lr_loader *l, uint32_t x, uint32_t y)
     double far = l->news.size > 0 ? l->news.size : 1;
     lr_board_unlock(b);
     settings.inspect = LR_INSPECT_LIGHT;
+    settings.integrator = LR_INTEGRATOR_WHITTED;
     lr_status status = LR_OK;
     if (!l->explainer)
         status = lr_device_open(&l->device, &l->explainer, &error);

@@ -23,6 +23,7 @@ typedef struct lr_news {
     lr_camera *cameras; /* the scene's; names are owned too */
     uint32_t camera_count;
     uint32_t samples, depth, seed;
+    lr_integrator integrator;
     double exposure;
     double size;    /* of the scene: the diagonal of its bounds, 0 where there are none */
     uint64_t saved; /* grows with every camera that was saved: number saved_index is now */

@@ -133,6 +133,7 @@ static lr_status prepare(lr_renderer *r, lr_error *error)
         .samples = r->wish.samples,
         .depth = r->wish.depth,
         .seed = r->wish.seed,
+        .filter = r->wish.filter,
         .camera = &r->wish.camera,
         .inspect = inspect_now(r),
     };
@@ -159,7 +160,7 @@ static void tell(lr_renderer *r)
         .samples_done = p->finished ? p->settings.samples : p->sweep.first_sample,
         .samples = p->settings.samples,
         .rays = (double)(s->primary.traced + s->reflected.traced + s->refracted.traced +
-                         s->shadow.traced),
+                         s->bounced.traced + s->shadow.traced),
         .seconds = s->trace_seconds,
         .picture = r->started,
     };

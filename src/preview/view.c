@@ -10,6 +10,7 @@
 #include "preview/camera_control.h"
 #include "preview/overlay.h"
 #include "render/settings.h"
+#include "scene/camera.h"
 
 #define MESSAGE_SECONDS 4.0
 #define IDLE_SECONDS 0.25      /* between looks at Ctrl-C */
@@ -148,17 +149,6 @@ static bool fly(lr_view *v, double seconds)
 
 /* ---- What the other threads tell ---------------------------------------------------------- */
 
-static bool same_vec3(lr_vec3 a, lr_vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
-static bool same_camera(const lr_camera *a, const lr_camera *b)
-{
-    return same_vec3(a->from, b->from) && same_vec3(a->to, b->to) && same_vec3(a->up, b->up) &&
-           a->fov == b->fov && a->fov_to_centers == b->fov_to_centers;
-}
-
 static void free_cameras(lr_view *v)
 {
     for (uint32_t i = 0; i < v->camera_count; i++)
@@ -168,13 +158,20 @@ static void free_cameras(lr_view *v)
     v->camera_count = 0;
 }
 
+void lr_view_wish_samples(lr_view *view)
+{
+    uint32_t given = view->options->render.samples;
+    given = given ? given : view->file.samples;
+    view->wish.samples = given ? given : lr_default_samples(view->wish.integrator);
+}
+
 /* Follows what the file says where it says something else than before, and else keeps what hands
  * have made of it. */
 static void adopt_settings(lr_view *v, const lr_news *news)
 {
     const lr_render_options *given = &v->options->render;
-    if (!given->samples && news->samples != v->file.samples)
-        v->wish.samples = news->samples;
+    bool samples = news->samples != v->file.samples;
+    bool integrator = news->integrator != v->file.integrator;
     if (!given->has_depth && news->depth != v->file.depth)
         v->wish.depth = news->depth;
     if (!given->has_seed && news->seed != v->file.seed)
@@ -182,6 +179,13 @@ static void adopt_settings(lr_view *v, const lr_news *news)
     if (!v->options->has_exposure && news->exposure != v->file.exposure)
         v->wish.exposure = news->exposure;
     v->file.samples = news->samples;
+    v->file.integrator = news->integrator;
+    if (!given->integrator && integrator) {
+        v->wish.integrator = news->integrator;
+        lr_view_build(v);
+    }
+    if (samples || integrator)
+        lr_view_wish_samples(v);
     v->file.depth = news->depth;
     v->file.seed = news->seed;
     v->file.exposure = news->exposure;
@@ -194,7 +198,7 @@ static void adopt_cameras(lr_view *v, lr_news *news)
     if (v->camera >= news->camera_count)
         v->camera = 0;
     const lr_camera *now = &news->cameras[v->camera];
-    if (!same_camera(&before, now)) {
+    if (!lr_camera_same(&before, now)) {
         v->wish.camera = *now;
         v->wish.camera.name = NULL;
     }
@@ -392,6 +396,8 @@ static lr_status first_wish(lr_view *v, const lr_scene *scene, lr_error *error)
         .samples = settings.samples,
         .depth = settings.depth,
         .seed = settings.seed,
+        .integrator = settings.integrator,
+        .filter = settings.filter,
         .exposure = v->options->has_exposure ? v->options->exposure : scene->image.exposure,
         .picture = 1,
     };
@@ -399,6 +405,7 @@ static lr_status first_wish(lr_view *v, const lr_scene *scene, lr_error *error)
     v->camera = (uint32_t)(settings.camera - scene->cameras);
     v->file.samples = scene->image.samples;
     v->file.depth = scene->image.depth;
+    v->file.integrator = (lr_integrator)(scene->image.integrator + 1);
     v->file.seed = scene->image.seed;
     v->file.exposure = scene->image.exposure;
     return LR_OK;

@@ -19,7 +19,8 @@ typedef struct lr_view {
     uint32_t camera_count, camera; /* and which of them this began with */
     double scene_size;             /* the diagonal of its bounds, 0: unknown */
     struct {
-        uint32_t samples, depth, seed;
+        uint32_t samples, depth, seed; /* samples 0: nothing */
+        lr_integrator integrator;
         double exposure;
     } file; /* what the scene file says */
     uint64_t seen_scene, seen_saved, seen_focus, seen_report, seen_message;
@@ -41,6 +42,9 @@ void lr_view_wish_look(lr_view *view);
 
 /* Has other kernels made for what is wished. */
 void lr_view_build(lr_view *view);
+
+/* Samples a pixel as options and scene say, or as suits the integrator. */
+void lr_view_wish_samples(lr_view *view);
 
 /* Has the pixel there explained, or the camera focus on what is seen there. */
 void lr_view_explain(lr_view *view, double x, double y, bool focus);

@@ -175,6 +175,10 @@ lr_status lr_explain(lr_device *device, const lr_scene *scene, const lr_render_o
     lr_settings settings;
     *explanation = (lr_explanation){0};
     lr_status status = lr_settle(scene, &own, &settings, error);
+    if (!status && settings.integrator == LR_INTEGRATOR_PATH)
+        status = lr_fail(error, LR_ERROR_ARGUMENT,
+                         "explain tells of ray trees, and this scene is path-traced; ask with "
+                         "--integrator whitted");
     if (status)
         return status;
     return lr_explain_picture(device, scene, &settings, &own, x, y, sample, explanation, error);

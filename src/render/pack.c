@@ -1,10 +1,11 @@
-#include "render/pack.h"
+#include "render/pack_internal.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "scene/camera.h"
 
 #define LOG2_E 1.4426950408889634
 
@@ -178,6 +179,16 @@ static lr_status pack_lights(const lr_scene *scene, lr_packed_scene *packed, lr_
     return LR_OK;
 }
 
+/* Whether any camera needs more than a pinhole's rays, so that changing cameras changes no kernel.
+ */
+static bool has_lens(const lr_scene *scene)
+{
+    bool any = false;
+    for (uint32_t i = 0; i < scene->camera_count; i++)
+        any = any || !lr_camera_is_pinhole(&scene->cameras[i]);
+    return any;
+}
+
 lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_packed_scene *packed,
                         lr_error *error)
 {
@@ -196,6 +207,7 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
     };
     packed->constants[LR_SPEC_INSPECT] = settings->inspect != LR_INSPECT_LIGHT;
     packed->constants[LR_SPEC_PATH] = settings->integrator == LR_INTEGRATOR_PATH;
+    packed->constants[LR_SPEC_CAMERA] = has_lens(scene) || lr_pack_filter(scene, settings);
     packed->constants[LR_SPEC_FOG] = scene->fog_density > 0;
     lr_status status = lr_pack_texture_records(scene, packed, error);
     if (!status)

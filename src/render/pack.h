@@ -23,6 +23,7 @@ typedef struct lr_settings {
     uint32_t crop_x, crop_y, crop_width, crop_height;
     const lr_camera *camera;
     lr_integrator integrator;
+    lr_filter filter;
     uint32_t leaf_size, threads; /* of the builder of trees; 0: as suits them */
     lr_inspect inspect;
     lr_trees *trees; /* NULL, or those of the packing before, which become those of this one; the

@@ -1,7 +1,10 @@
 /* The picture that is asked for: camera, size, samples. */
 #include "render/pack_internal.h"
 
+#include <math.h>
 #include <string.h>
+
+#include "scene/camera.h"
 
 /* The media around the camera: of more than LR_MEDIA_MAX the ones that rank highest. */
 static void pack_inside(const lr_scene *scene, const lr_camera *camera, lr_packed_scene *packed)
@@ -27,21 +30,52 @@ static void pack_inside(const lr_scene *scene, const lr_camera *camera, lr_packe
     packed->frame.inside3 = inside[6] | inside[7] << 16;
 }
 
-void lr_pack_camera(const lr_scene *scene, const lr_settings *settings, lr_packed_scene *packed)
+/* The frame's vectors as a camera has them. */
+static void pack_view(const lr_camera *camera, const lr_settings *settings, struct gpu_frame *frame)
 {
-    const lr_camera *camera = settings->camera;
     lr_vec3 forward = lr_vec3_normalize(lr_vec3_sub(camera->to, camera->from));
     lr_vec3 right = lr_vec3_normalize(lr_vec3_cross(forward, camera->up));
     lr_vec3 up = lr_vec3_cross(right, forward);
-    double sine, cosine;
-    lr_sincos_degrees(camera->fov / 2, &sine, &cosine);
-    uint32_t rows = settings->height;
-    double pixel = 2 * sine / cosine / (camera->fov_to_centers && rows > 1 ? rows - 1 : rows);
-    struct gpu_frame *frame = &packed->frame;
+    double pixel = lr_camera_pixel_size(camera, settings->height);
+    if (camera->projection == LR_ORTHOGRAPHIC)
+        pixel *= lr_vec3_length(lr_vec3_sub(camera->to, camera->from));
+    if (camera->projection == LR_PANORAMA)
+        pixel = 1;
     frame->origin = lr_pack_vec3(camera->from);
     frame->forward = lr_pack_vec3(forward);
     frame->pixel_right = lr_pack_vec3(lr_vec3_scale(right, pixel));
     frame->pixel_down = lr_pack_vec3(lr_vec3_scale(up, -pixel));
+    frame->lens.right = lr_pack_vec3(lr_vec3_scale(right, camera->aperture / 2));
+    frame->lens.up = lr_pack_vec3(lr_vec3_scale(up, camera->aperture / 2));
+}
+
+uint32_t lr_pack_filter(const lr_scene *scene, const lr_settings *settings)
+{
+    lr_filter filter =
+        settings->filter ? settings->filter : (lr_filter)(scene->image.filter + LR_FILTER_BOX);
+    return filter == LR_FILTER_TENT              ? LR_GPU_FILTER_TENT
+           : filter == LR_FILTER_BLACKMAN_HARRIS ? LR_GPU_FILTER_BLACKMAN_HARRIS
+                                                 : 0;
+}
+
+static void pack_lens(const lr_camera *camera, const lr_settings *settings, struct gpu_lens *lens)
+{
+    static const uint32_t projections[] = {0, LR_GPU_ORTHOGRAPHIC, LR_GPU_PANORAMA};
+    lens->kind = projections[camera->projection] | camera->blades << LR_GPU_BLADES_SHIFT;
+    lens->inv_focus = (float)(1 / lr_camera_focus_distance(camera));
+    lens->blade_turns = (float)(fmod(90 - camera->blade_rotation, 360) / 360);
+    lens->inv_blades = camera->blades ? (float)(1.0 / camera->blades) : 1;
+    lens->turns_across = (float)(1.0 / settings->width);
+    lens->turns_down = (float)(0.5 / settings->height);
+}
+
+void lr_pack_camera(const lr_scene *scene, const lr_settings *settings, lr_packed_scene *packed)
+{
+    const lr_camera *camera = settings->camera;
+    struct gpu_frame *frame = &packed->frame;
+    pack_view(camera, settings, frame);
+    pack_lens(camera, settings, &frame->lens);
+    frame->lens.kind |= lr_pack_filter(scene, settings);
     frame->half_width = (float)(settings->width * 0.5);
     frame->half_height = (float)(settings->height * 0.5);
     frame->samples = settings->samples;

@@ -35,6 +35,9 @@ typedef struct lr_primitive {
     lr_bvh_box box;
 } lr_primitive;
 
+/* pack_camera.c: LR_GPU_FILTER_TENT, ...; 0: the box, which needs no kernel's help. */
+uint32_t lr_pack_filter(const lr_scene *scene, const lr_settings *settings);
+
 lr_transform lr_pack_inverse(const lr_transform *t);
 vec4 lr_pack_row(const double row[4], double scale);
 

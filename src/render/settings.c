@@ -31,6 +31,11 @@ static lr_status choose_camera(const lr_scene *scene, const char *name, const lr
                    known[0] ? known : "one without a name");
 }
 
+uint32_t lr_default_samples(lr_integrator integrator)
+{
+    return integrator == LR_INTEGRATOR_PATH ? PATH_SAMPLES : 1;
+}
+
 lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_settings *settings,
                     lr_error *error)
 {
@@ -46,12 +51,13 @@ lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_
         .crop_height = options->crop.height,
         .integrator = options->integrator ? options->integrator
                                           : (lr_integrator)(scene->image.integrator + 1),
+        .filter = options->filter,
         .leaf_size = options->leaf_size,
         .threads = options->threads,
     };
     s->samples = options->samples ? options->samples : scene->image.samples;
     if (!s->samples)
-        s->samples = s->integrator == LR_INTEGRATOR_PATH ? PATH_SAMPLES : 1;
+        s->samples = lr_default_samples(s->integrator);
     if (s->width > 32768 || s->height > 32768)
         return lr_fail(error, LR_ERROR_ARGUMENT, "the size %ux%u is over 32768 (--size)", s->width,
                        s->height);

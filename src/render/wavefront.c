@@ -80,6 +80,10 @@ static lr_status take_counts(lr_wavefront *w, uint32_t rays, uint32_t generation
         s->primary.traced += rays;
         s->primary.hit += c->hits;
     }
+    if (has_paths(w) && generation > 0) {
+        s->bounced.traced += rays;
+        s->bounced.hit += c->hits;
+    }
     s->reflected.traced += c->reflected;
     s->reflected.hit += c->reflected_hits;
     s->refracted.traced += c->refracted;

@@ -71,15 +71,3 @@ bool lr_transform_usable(const lr_transform *t)
     return all_within(t, LR_COORDINATE_MAX) && lr_transform_inverse(t, &inverse) &&
            all_within(&inverse, 1e36);
 }
-
-bool lr_camera_usable(const lr_camera *camera)
-{
-    lr_bounds bounds = lr_bounds_empty();
-    lr_bounds_add_point(&bounds, camera->from);
-    lr_bounds_add_point(&bounds, camera->to);
-    lr_bounds_add_point(&bounds, camera->up);
-    lr_vec3 view = lr_vec3_sub(camera->to, camera->from);
-    /* Bounds leave NaN out, lengths and lr_parallel do not. */
-    return lr_bounds_usable(&bounds) && lr_vec3_length(view) >= LR_LENGTH_MIN &&
-           !lr_parallel(view, camera->up) && camera->fov > 0 && camera->fov < 180;
-}

@@ -27,8 +27,4 @@ bool lr_bounds_usable(const lr_bounds *bounds);
 /* Whether objects can have this transform: up to LR_COORDINATE_MAX, with an inverse up to 1e36. */
 bool lr_transform_usable(const lr_transform *t);
 
-/* Whether a scene can have this camera: coordinates up to LR_COORDINATE_MAX, from and to apart, up
- * not along the view, 0 < fov < 180. */
-bool lr_camera_usable(const lr_camera *camera);
-
 #endif

@@ -89,6 +89,9 @@ static void put_surroundings(hasher *h, const lr_scene *scene)
     put_number(h, scene->image.min_weight);
     put_number(h, scene->image.exposure);
     put_count(h, scene->image.integrator);
+    put_count(h, scene->image.filter);
+    put_count(h, scene->image.tone);
+    put_number(h, scene->image.white);
     put_vector(h, scene->ambient);
     put_background(h, &scene->background);
     put_vector(h, scene->background_up);
@@ -103,6 +106,12 @@ static void put_camera(hasher *h, const lr_camera *camera)
     put_vector(h, camera->up);
     put_number(h, camera->fov);
     put_count(h, camera->fov_to_centers);
+    put_count(h, camera->projection);
+    put_number(h, camera->height);
+    put_number(h, camera->aperture);
+    put_number(h, camera->focus);
+    put_count(h, camera->blades);
+    put_number(h, camera->blade_rotation);
 }
 
 static void put_light(hasher *h, const lr_light *light)

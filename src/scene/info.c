@@ -10,6 +10,8 @@ void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info)
         .materials = scene->material_count,
         .cameras = scene->camera_count,
         .exposure = (float)scene->image.exposure,
+        .tone = scene->image.tone,
+        .white = (float)scene->image.white,
         .meshes = scene->mesh_count,
         .notes = (const char *const *)scene->notes,
         .note_count = scene->note_count,

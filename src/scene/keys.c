@@ -22,6 +22,7 @@
 
 /* ---- Camera, image, surroundings ----------------------------------------------------------- */
 
+static const char *const projections[] = {"perspective", "orthographic", "panorama", NULL};
 static const lr_field camera_fields[] = {
     {"from", LR_FIELD_VECTOR, 0, COORDINATE, DEFAULT(0, 1, 5), MEMBER(lr_camera, from),
      .doc = "Where the eye is."},
@@ -34,11 +35,30 @@ static const lr_field camera_fields[] = {
     {"fov_to_centers", LR_FIELD_BOOLEAN, 0, DEFAULT(0), MEMBER(lr_camera, fov_to_centers),
      .doc = "The field of view ends in the middle of the outer rows of pixels, as in NFF, not at "
             "their edges."},
+    {"projection", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_camera, projection),
+     .choices = projections,
+     .doc = "How directions become places: from a point, along parallels, or all of them around."},
+    {"height", LR_FIELD_NUMBER, 0, RANGE(0, LR_COORDINATE_MAX), DEFAULT(0),
+     MEMBER(lr_camera, height),
+     .doc = "Orthographic: the height of what the picture shows; 0: what `fov` shows at `to`."},
+    {"aperture", LR_FIELD_NUMBER, 0, RANGE(0, LR_COORDINATE_MAX), DEFAULT(0),
+     MEMBER(lr_camera, aperture),
+     .doc = "Diameter of the lens; the wider, the less depth is sharp. 0: all of it."},
+    {"focus", LR_FIELD_NUMBER, 0, RANGE(0, LR_COORDINATE_MAX), DEFAULT(0), MEMBER(lr_camera, focus),
+     .doc = "Distance along the view at which a lens is sharp; 0: that of `to`."},
+    {"blades", LR_FIELD_INTEGER, 0, RANGE(0, 32), DEFAULT(0), MEMBER(lr_camera, blades),
+     .doc = "Corners of the lens's opening, 3 or more; 0: round."},
+    {"blade_rotation", LR_FIELD_NUMBER, 0, RANGE(-1e6, 1e6), DEFAULT(0),
+     MEMBER(lr_camera, blade_rotation),
+     .doc = "Degrees, clockwise in the picture; at 0 a corner points up."},
 };
 const lr_record lr_camera_record =
     RECORD("camera", "Where the picture is taken from.", camera_fields, 0);
 
+static const char *const filters[] = {"box", "tent", "blackman-harris", NULL};
 static const char *const integrators[] = {"whitted", "path", NULL};
+static const char *const tones[] = {"none", "reinhard", "aces", "agx", NULL};
+
 static const lr_field image_fields[] = {
     {"width", LR_FIELD_INTEGER, 0, RANGE(1, 32768), DEFAULT(640), MEMBER(lr_scene, image.width),
      .doc = "Width in pixels."},
@@ -58,6 +78,13 @@ static const lr_field image_fields[] = {
     {"integrator", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_scene, image.integrator),
      .choices = integrators,
      .doc = "How light is found: mirrors, glass and direct light, or all of its ways by chance."},
+    {"filter", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_scene, image.filter), .choices = filters,
+     .doc = "How samples weigh by their distance from the middle of the pixel."},
+    {"tone", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_scene, image.tone), .choices = tones,
+     .doc = "How light becomes a colour of PPM and PNG files; none clips it at 1."},
+    {"white", LR_FIELD_NUMBER, LR_DERIVED, RANGE(LR_WHITE_MIN, LR_WHITE_MAX),
+     MEMBER(lr_scene, image.white), .derived = "off",
+     .doc = "White balance: light of this colour temperature, in kelvin, becomes white."},
 };
 const lr_record lr_image_record = RECORD("image", "The picture to be made.", image_fields, 0);
 

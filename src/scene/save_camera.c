@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "scene/bounds.h"
+#include "scene/camera.h"
 #include "scene/import.h"
 #include "scene/nff.h"
 #include "scene/node.h"

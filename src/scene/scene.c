@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "base/memory.h"
 #include "scene/build.h"
+#include "scene/camera.h"
 #include "scene/part.h"
 
 #include <stdlib.h>
@@ -17,6 +18,16 @@ static lr_camera *add_camera(lr_reader *reader)
     if (!camera)
         reader->report->no_memory = true;
     return camera;
+}
+
+static void check_lens(lr_reader *reader, const lr_camera *camera, const lr_given *given,
+                       const lr_node *at)
+{
+    const char *key, *flaw = lr_camera_flaw(camera, &key);
+    if (!flaw)
+        return;
+    const lr_node *value = lr_given_value(given, &lr_camera_record, key);
+    lr_report_add(reader->report, (value ? value : at)->offset, "the camera's %s: %s", key, flaw);
 }
 
 static void read_camera(lr_reader *reader, const lr_node *node, const lr_node *name, lr_vec3 up)
@@ -56,6 +67,8 @@ static void read_camera(lr_reader *reader, const lr_node *node, const lr_node *n
                       camera->up.x, camera->up.y, camera->up.z,
                       lr_parallel(view, (lr_vec3){0, 0, 1}) ? 1 : 0,
                       lr_parallel(view, (lr_vec3){0, 0, 1}) ? 0 : -1);
+    else
+        check_lens(reader, camera, &given, at);
 }
 
 static void read_cameras(lr_reader *reader, const lr_node *node, lr_vec3 up)

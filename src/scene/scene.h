@@ -175,12 +175,20 @@ typedef struct lr_background {
     lr_color ground;    /* sky: the share of light that the ground reflects; 0..1 */
 } lr_background;
 
+typedef enum lr_projection { LR_PERSPECTIVE, LR_ORTHOGRAPHIC, LR_PANORAMA } lr_projection;
+
 typedef struct lr_camera {
     char *name; /* NULL for the only one */
     uint32_t line;
     lr_vec3 from, to, up; /* from != to, up not along the view */
     double fov;           /* vertical, 0 < fov < 180 */
     bool fov_to_centers;  /* fov ends at the centres of the outer rows of pixels, as in NFF */
+    lr_projection projection;
+    double height;   /* orthographic: of the picture; 0: what fov shows where `to` is */
+    double aperture; /* diameter of the lens; 0: a pinhole, as all but perspective cameras are */
+    double focus;    /* distance along the view that is sharp; 0: that of `to` */
+    uint32_t blades; /* corners of the aperture, 3..32; 0: round */
+    double blade_rotation; /* of the corner that else points up, clockwise in the picture */
 } lr_camera;
 
 struct lr_part; /* part.h */
@@ -218,6 +226,9 @@ struct lr_scene {
         double min_weight; /* 0..1 */
         double exposure;   /* stops, -64..64 */
         enum { LR_SCENE_WHITTED, LR_SCENE_PATH } integrator;
+        enum { LR_SCENE_BOX, LR_SCENE_TENT, LR_SCENE_BLACKMAN_HARRIS } filter;
+        lr_tone tone;
+        double white; /* kelvin, LR_WHITE_MIN..LR_WHITE_MAX; 0: off */
     } image;
 };
 

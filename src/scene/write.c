@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "scene/camera.h"
 #include "scene/report.h"
 
 char *lr_written(void (*put)(FILE *out, void *something), void *something, size_t *length)
@@ -113,9 +114,8 @@ void lr_camera_frame(const lr_scene *scene, const lr_camera *camera, lr_vec3 *fo
     *forward = lr_vec3_normalize(lr_vec3_sub(camera->to, camera->from));
     *right = lr_vec3_normalize(lr_vec3_cross(*forward, camera->up));
     *up = lr_vec3_cross(*right, *forward);
-    double sine, cosine, rows = scene->image.height;
-    lr_sincos_degrees(camera->fov / 2, &sine, &cosine);
-    *half_height = sine / cosine * (camera->fov_to_centers && rows > 1 ? rows / (rows - 1) : 1);
+    double rows = scene->image.height;
+    *half_height = lr_camera_pixel_size(camera, rows) * rows / 2;
 }
 
 const char *lr_side_path(const char *path, uint32_t number, const char *ending, char *buffer,

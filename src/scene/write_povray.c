@@ -38,6 +38,11 @@ static void put_camera(lr_writer *writer)
     fputs("\n  up ", out);
     put_vector(out, lr_vec3_scale(up, 2 * half_height));
     fputs("\n}\n", out);
+    if (camera->projection != LR_PERSPECTIVE)
+        lr_writer_cannot(writer,
+                         "the camera's projection is left out, it is written as perspective");
+    if (camera->aperture > 0)
+        lr_writer_cannot(writer, "the camera's lens is left out, everything is in focus");
     for (uint32_t i = 1; i < scene->camera_count; i++)
         lr_writer_cannot(writer, "cameras beside the first are left out");
 }
@@ -104,6 +109,10 @@ static void put_surroundings(lr_writer *writer)
         lr_writer_cannot(writer, "samples a pixel are left out, +A asks POV-Ray for some");
     if (scene->image.exposure != 0)
         lr_writer_cannot(writer, "the exposure is left out");
+    if (scene->image.tone != LR_TONE_NONE)
+        lr_writer_cannot(writer, "the tone map is left out");
+    if (scene->image.white != 0)
+        lr_writer_cannot(writer, "the white balance is left out");
 }
 
 static void put_light(lr_writer *writer, const lr_light *light)

@@ -45,6 +45,11 @@ static void put_camera(lr_writer *writer)
     put_vector(out, "VIEWDIR", forward);
     put_vector(out, "UPDIR", up);
     fputs("\nEND_CAMERA\n", out);
+    if (camera->projection != LR_PERSPECTIVE)
+        lr_writer_cannot(writer,
+                         "the camera's projection is left out, it is written as perspective");
+    if (camera->aperture > 0)
+        lr_writer_cannot(writer, "the camera's lens is left out, everything is in focus");
     for (uint32_t i = 1; i < scene->camera_count; i++)
         lr_writer_cannot(writer, "cameras beside the first are left out");
 }
@@ -75,6 +80,10 @@ static void put_surroundings(lr_writer *writer)
         lr_writer_cannot(writer, "samples a pixel are left out, -aasamples asks Tachyon for some");
     if (scene->image.exposure != 0)
         lr_writer_cannot(writer, "the exposure is left out");
+    if (scene->image.tone != LR_TONE_NONE)
+        lr_writer_cannot(writer, "the tone map is left out");
+    if (scene->image.white != 0)
+        lr_writer_cannot(writer, "the white balance is left out");
 }
 
 static void put_attenuation(lr_writer *writer, double falloff)

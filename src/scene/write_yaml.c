@@ -230,7 +230,7 @@ static void put_surroundings(lr_writer *writer)
     FILE *out = writer->out;
     mapping image = {.out = out}, fog = image;
     fputs("image: ", out);
-    put_record(&image, &lr_image_record, scene, NULL);
+    put_record(&image, &lr_image_record, scene, scene->image.white == 0 ? "white" : NULL);
     end_mapping(&image);
     fputs("\nambient: ", out);
     put_color(out, scene->ambient);

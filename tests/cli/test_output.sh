@@ -53,6 +53,23 @@ expect 0 "$lavaray" render -q $cameras -o "$work/zero.ppm" --exposure 0
 cmp -s "$work/scene.ppm" "$work/zero.ppm" && problem '--exposure changes nothing'
 expect 0 "$lavaray" render -q $cameras -o "$work/side.ppm" --camera side
 cmp -s "$work/scene.ppm" "$work/side.ppm" && problem '--camera changes nothing'
+# So do its tone map and white balance; files of light have no tone map, and say nothing of one.
+sed 's/^image: {/&tone: aces, white: 3200, /' $small >"$work/toned.yaml"
+grep -q aces "$work/toned.yaml" || problem "no image line in $small"
+expect 0 "$lavaray" render -q "$work/toned.yaml" -o "$work/scene.png" --stats "$work/a.json"
+grep -q '"tone": "aces"' "$work/a.json" && grep -q '"white": 3200' "$work/a.json" ||
+    problem 'the statistics do not tell tone map and white balance'
+grep -qa 'seed [0-9]*, tone aces, white 3200' "$work/scene.png" || problem 'neither does the picture'
+expect 0 "$lavaray" render -q $small -o "$work/a.ppm" --tone aces --white 3200
+expect 0 "$lavaray" render -q "$work/toned.yaml" -o "$work/b.ppm"
+same "$work/a.ppm" "$work/b.ppm"
+expect 0 "$lavaray" render -q "$work/toned.yaml" -o "$work/c.ppm" --tone none
+cmp -s "$work/b.ppm" "$work/c.ppm" && problem '--tone none changes nothing'
+expect 0 "$lavaray" render -q "$work/toned.yaml" -o "$work/a.exr" --tone none
+expect 0 "$lavaray" render -q "$work/toned.yaml" -o "$work/b.exr"
+grep -qa aces "$work/b.exr" && problem 'an EXR speaks of a tone map'
+expect 0 "$lavaray" compare "$work/a.exr" "$work/b.exr"
+
 expect 2 "$lavaray" render -q $cameras -o "$work/x.ppm" --camera back && says err 'back'
 expect 4 "$lavaray" render -q $small -o "$work/x.ppm" --device 'no such device'
 says err 'no such device'

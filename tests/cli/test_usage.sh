@@ -15,7 +15,7 @@ for command in render explain devices doctor validate info convert schema compar
 done
 expect 0 "$lavaray" render --help
 says out '^For tests: the picture does not depend on these:'
-for flag in output format size spp depth seed maxval transfer half exposure camera crop device stats quiet \
+for flag in output format size spp depth seed maxval transfer half exposure tone white camera crop device stats quiet \
     verbose tile chunk storage-loads; do
     says out "--$flag( |$)"
 done
@@ -73,6 +73,11 @@ wrong 'PFM' render $small -o "$work/x.pfm" --transfer srgb
 wrong 'EXR' render $small -o "$work/x.exr" --maxval 255
 wrong 'EXR' render $small -o "$work/x.exr" --transfer srgb
 wrong 'for EXR alone' render $small -o "$out" --half
+wrong 'none\|reinhard\|aces\|agx' render $small -o "$out" --tone filmic
+wrong 'not for PFM and EXR' render $small -o "$work/x.exr" --tone aces
+wrong 'not for PFM and EXR' render $small -o - --format pfm --tone agx
+wrong 'from 1667 to 25000' render $small -o "$out" --white 1666
+wrong 'did you mean --tone' render $small -o "$out" --tonemap aces
 wrong 'for EXR alone' render $small -o "$work/x.exr" --format ppm --half
 wrong 'must be ppm\|png\|pfm\|exr' render $small -o - --format jpg
 wrong 'standard output' render $small -o - --stats -

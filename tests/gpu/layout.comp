@@ -197,6 +197,12 @@ void main()
     put_vec3(frame.inv_cell); put(floatBitsToUint(frame.inspect_scale));
     put(frame.choices); put(frame.object_emitters); put(frame.choice_shift);
     put(frame.environment);
+    put_vec3(frame.lens.right); put(floatBitsToUint(frame.lens.inv_focus)); put_vec3(frame.lens.up);
+    put(frame.lens.kind); put_vec3(frame.lens.origin_step);
+    put(floatBitsToUint(frame.lens.blade_turns)); put_vec3(frame.lens.forward_step);
+    put(floatBitsToUint(frame.lens.inv_blades)); put_vec3(frame.lens.right_step);
+    put(floatBitsToUint(frame.lens.turns_across)); put_vec3(frame.lens.down_step);
+    put(floatBitsToUint(frame.lens.turns_down));
     put(work.tile_x); put(work.tile_y); put(work.tile_width); put(work.tile_height);
     put(work.first_sample); put(work.count); put(work.first); put(work.light);
     put(work.light_count); put(work.first_lights); put(work.shadow_room);

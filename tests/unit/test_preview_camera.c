@@ -3,7 +3,7 @@
 #include "scene_tests.h"
 
 #include "preview/camera_control.h"
-#include "scene/bounds.h"
+#include "scene/camera.h"
 
 static const lr_screen screen = {640, 480};
 
@@ -268,13 +268,66 @@ static void test_limits(void **state)
     assert_true(lr_camera_usable(&usual));
 }
 
+/* An orthographic picture of 640 x 480 that shows 8 m of height. */
+static void test_orthographic(void **state)
+{
+    (void)state;
+    const lr_camera camera = {.from = {0, 0, 10},
+                              .up = {0, 1, 0},
+                              .fov = 40,
+                              .projection = LR_ORTHOGRAPHIC,
+                              .height = 8,
+                              .focus = 3};
+    assert_same_point(lr_camera_point(&camera, screen, 320, 0), ((lr_vec3){0, 4, 0}), 1e-12);
+    double ends[4];
+    /* Whatever the distance, 60 pixels are a metre. */
+    assert_true(lr_camera_project(&camera, screen, (lr_vec3){1, 2, 5}, (lr_vec3){1, 2, -90}, ends));
+    for (int i = 0; i < 4; i++)
+        assert_near(ends[i], i % 2 ? 240 - 120 : 320 + 60, 1e-9);
+    lr_vec3 about = lr_camera_point(&camera, screen, 100, 50);
+    lr_camera moved = lr_camera_zoom(camera, 0.5, about);
+    assert_near(moved.height, 4, 0);
+    assert_near(moved.focus, 1.5, 0);
+    assert_same_point(lr_camera_point(&moved, screen, 100, 50), about, 1e-12);
+    moved = lr_camera_pan(camera, screen, 60, 0);
+    assert_same_point(moved.from, ((lr_vec3){-1, 0, 10}), 1e-12);
+    lr_camera panorama = camera;
+    panorama.projection = LR_PANORAMA;
+    assert_false(
+        lr_camera_project(&panorama, screen, (lr_vec3){0, 0, 0}, (lr_vec3){1, 0, 0}, ends));
+}
+
+/* The plane in focus goes through the point that is looked at, unless told otherwise. */
+static void test_lens(void **state)
+{
+    (void)state;
+    lr_camera camera = usual;
+    camera.aperture = 0.1;
+    assert_near(lr_camera_focus_distance(&camera), distance(usual.from, usual.to), 1e-12);
+    camera.focus = 2.5;
+    assert_near(lr_camera_focus_distance(&camera), 2.5, 0);
+    lr_vec3 point = {0.3, 1.2, 2};
+    lr_camera moved = lr_camera_focus(camera, point);
+    assert_near(lr_camera_focus_distance(&moved), distance(moved.from, moved.to), 1e-12);
+    lr_camera bad[] = {camera, camera, camera, camera};
+    bad[0].projection = LR_ORTHOGRAPHIC;
+    bad[1].aperture = 2501;
+    bad[2].aperture = 1e-21;
+    bad[3].blades = 2;
+    for (int i = 0; i < 4; i++)
+        assert_false(lr_camera_usable(&bad[i]));
+    assert_true(lr_camera_usable(&camera));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_points), cmocka_unit_test(test_lines), cmocka_unit_test(test_orbit),
-        cmocka_unit_test(test_poles),  cmocka_unit_test(test_pan),   cmocka_unit_test(test_zoom),
-        cmocka_unit_test(test_flight), cmocka_unit_test(test_focus), cmocka_unit_test(test_fov),
-        cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_points),       cmocka_unit_test(test_lines),
+        cmocka_unit_test(test_orbit),        cmocka_unit_test(test_poles),
+        cmocka_unit_test(test_pan),          cmocka_unit_test(test_zoom),
+        cmocka_unit_test(test_flight),       cmocka_unit_test(test_focus),
+        cmocka_unit_test(test_fov),          cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_orthographic), cmocka_unit_test(test_lens),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

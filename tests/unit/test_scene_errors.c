@@ -77,6 +77,14 @@ static void test_missing(void **state)
          "1:65: the spot has both \"to\" and \"direction\""},
         {"fog: {color: red}\n" SPHERE(""), "1:6: fog has no \"density\", expected a number"},
         {SPHERE("rotate: {angle: 3}"), "3:20: rotate has no \"axis\", expected three numbers"},
+        {"camera: {aperture: 1, projection: panorama}\nobjects: [{sphere: {}}]\n",
+         "1:20: the camera's aperture: only perspective cameras have an aperture, expected 0"},
+        {"camera: {aperture: 2, focus: 0.001}\nobjects: [{sphere: {}}]\n",
+         "1:20: the camera's aperture: expected at most 1000 times the distance"},
+        {"camera: {blades: 2}\nobjects: [{sphere: {}}]\n",
+         "1:18: the camera's blades: a polygon has 3 corners or more"},
+        {"camera: {height: 1e-30}\nobjects: [{sphere: {}}]\n",
+         "1:18: the camera's height: expected 0 or at least 1e-20"},
     };
     CHECK(rows);
 }

@@ -74,7 +74,16 @@ static void test_hash(void **state)
     static const char *const texts[] = {
         "camera: {}\nobjects: [{sphere: {}}]\n",
         "camera: {fov_to_centers: true}\nobjects: [{sphere: {}}]\n",
+        "camera: {projection: panorama}\nobjects: [{sphere: {}}]\n",
+        "camera: {height: 3}\nobjects: [{sphere: {}}]\n",
+        "camera: {aperture: 3}\nobjects: [{sphere: {}}]\n",
+        "camera: {focus: 3}\nobjects: [{sphere: {}}]\n",
+        "camera: {blades: 3}\nobjects: [{sphere: {}}]\n",
+        "camera: {blade_rotation: 3}\nobjects: [{sphere: {}}]\n",
+        "camera: {}\nimage: {filter: tent}\nobjects: [{sphere: {}}]\n",
         "camera: {}\nimage: {seed: 1}\nobjects: [{sphere: {}}]\n",
+        "camera: {}\nimage: {tone: agx}\nobjects: [{sphere: {}}]\n",
+        "camera: {}\nimage: {white: 3200}\nobjects: [{sphere: {}}]\n",
         "camera: {}\nlights: []\nobjects: [{sphere: {}}]\n",
         "camera: {}\nobjects: [{sphere: {radius: 1.0000000000000002}}]\n",
         "camera: {}\nobjects: [{sphere: {shadow: false}}]\n",
@@ -85,7 +94,7 @@ static void test_hash(void **state)
         "camera: {}\nfog: {density: 0.1}\nobjects: [{sphere: {}}]\n",
         "camera: {}\nfog: {density: 0.1, color: 0.2}\nobjects: [{sphere: {}}]\n",
     };
-    char hashes[16][65];
+    char hashes[32][65];
     int count = sizeof texts / sizeof *texts;
     lr_scene_facts facts;
     for (int i = 0; i < count; i++) {

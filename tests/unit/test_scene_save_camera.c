@@ -4,7 +4,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "scene/bounds.h"
+#include "scene/camera.h"
 #include "scene/save_camera.h"
 #include "scene/write.h"
 #include "temporary_folder.h"

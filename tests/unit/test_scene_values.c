@@ -34,6 +34,8 @@ static void test_defaults(void **state)
     assert_int_equal(s->image.seed, 0);
     assert_near(s->image.min_weight, 0, 0);
     assert_near(s->image.exposure, 0, 0);
+    assert_int_equal(s->image.tone, LR_TONE_NONE);
+    assert_near(s->image.white, 0, 0);
     assert_vec(s->ambient, 0.1, 0.1, 0.1);
     assert_vec(s->background.colors[0], 1, 1, 1);
     assert_vec(s->background.colors[1], 0.4, 0.6, 1);

@@ -127,6 +127,12 @@ static void compare_cameras(const lr_camera *a, const lr_camera *b)
     SAME(up);
     SAME(fov);
     SAME(fov_to_centers);
+    SAME(projection);
+    SAME(height);
+    SAME(aperture);
+    SAME(focus);
+    SAME(blades);
+    SAME(blade_rotation);
 }
 
 static void compare_textures(const lr_texture *a, const lr_texture *b)
@@ -170,6 +176,8 @@ static void compare(const lr_scene *a, const lr_scene *b)
     SAME(image.seed);
     SAME(image.min_weight);
     SAME(image.exposure);
+    SAME(image.tone);
+    SAME(image.white);
     for (uint32_t i = 0; i < a->camera_count; i++)
         compare_cameras(&a->cameras[i], &b->cameras[i]);
     for (uint32_t i = 0; i < a->material_count; i++)
@@ -223,8 +231,10 @@ static void test_corners(void **state)
     lr_scene *scene = parse_good(
         "cameras:\n  'null': {fov_to_centers: true, fov: 1e-300}\n  \"1 \\\"a\\\\\\n\\t\": {up: "
         "[1e12, "
-        "0, -0.1]}\n  'a: b': {}\n  'é#': {}\n  material1: {}\n"
-        "image: {min_weight: 0.30000000000000004, exposure: -1.5, seed: 4294967295}\n"
+        "0, -0.1]}\n  'a: b': {}\n  'é#': {}\n  material1: {projection: orthographic, "
+        "height: 0.1}\n  lens: {aperture: 0.02, focus: 3.3, blades: 7, blade_rotation: -5.5}\n"
+        "image: {min_weight: 0.30000000000000004, exposure: -1.5, seed: 4294967295, tone: aces, "
+        "white: 3200.5}\n"
         "background: {gradient: [0.1, [0, 0, 1e-30]]}\nfog: {density: 1e-9, color: 0.1}\n"
         "up: [1, 2, 3]\nlights: []\n"
         "materials: {'yes': {}, material: {priority: -7}, material_1: {highlight: phong}}\n"

@@ -1,0 +1,44 @@
+#include "cli/look.h"
+
+#include <string.h>
+
+static bool holds_light(lr_format format)
+{
+    return format == LR_FORMAT_PFM || format == LR_FORMAT_EXR;
+}
+
+static lr_tone tone_named(const char *name)
+{
+    int tone = LR_TONE_NONE;
+    while (strcmp(lr_tone_name((lr_tone)tone), name) != 0) {
+        tone++;
+    }
+    return (lr_tone)tone;
+}
+
+int check_look(const command *self, const look_values *values, lr_format format)
+{
+    if (holds_light(format) && values->tone && tone_named(values->tone) != LR_TONE_NONE) {
+        return wrong_usage(self, "--tone is not for PFM and EXR, which hold the light as it is");
+    }
+    return EXIT_FINE;
+}
+
+void choose_look(const look_values *values, const lr_scene_info *scene, lr_encoding *encoding)
+{
+    encoding->tone = values->tone ? tone_named(values->tone) : scene->tone;
+    if (holds_light(encoding->format)) {
+        encoding->tone = LR_TONE_NONE;
+    }
+    encoding->white = values->white != 0 ? (float)values->white : scene->white;
+}
+
+void describe_look(const lr_encoding *encoding, FILE *out)
+{
+    if (encoding->tone != LR_TONE_NONE) {
+        fprintf(out, ", tone %s", lr_tone_name(encoding->tone));
+    }
+    if (encoding->white != 0) {
+        fprintf(out, ", white %.7g", (double)encoding->white);
+    }
+}

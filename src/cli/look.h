@@ -1,0 +1,44 @@
+/* How light becomes the colours of a picture file: tone map and white balance. */
+#ifndef LR_CLI_LOOK_H
+#define LR_CLI_LOOK_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+#include "cli/cli.h"
+
+/* A member of a command's values. */
+typedef struct look_values {
+    const char *tone; /* NULL: not given */
+    double white;     /* 0: not given */
+} look_values;
+
+/* The lines of the table; `type` has a member `look` of the above. */
+#define LOOK_OPTIONS(type)                                                                         \
+    {.name = "tone",                                                                               \
+     .kind = OPTION_CHOICE,                                                                        \
+     .offset = offsetof(type, look.tone),                                                          \
+     .value = "MAP",                                                                               \
+     .choices = "none|reinhard|aces|agx",                                                          \
+     .help = "how light becomes a colour of PPM and PNG: none\n"                                   \
+             "(clipped at 1), reinhard, aces or agx; default: the\n"                               \
+             "scene's",                                                                            \
+     .also = "tonemap|tone-map|view-transform"},                                                   \
+    {                                                                                              \
+        .name = "white", .kind = OPTION_REAL, .offset = offsetof(type, look.white), .value = "K",  \
+        .min = LR_WHITE_MIN, .max = LR_WHITE_MAX,                                                  \
+        .help = "white balance: light of this colour temperature, 1667\n"                          \
+                "to 25000 kelvin, becomes white; default: the scene's",                            \
+        .also = "temperature|white-balance|kelvin"                                                 \
+    }
+
+/* Whether the flags suit the format. Returns an exit_code, having printed what is wrong. */
+int check_look(const command *self, const look_values *values, lr_format format);
+
+/* What the flags say, else what the scene says. */
+void choose_look(const look_values *values, const lr_scene_info *scene, lr_encoding *encoding);
+
+/* ", tone aces, white 3200" of what is applied. */
+void describe_look(const lr_encoding *encoding, FILE *out);
+
+#endif
