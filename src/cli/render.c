@@ -1,4 +1,5 @@
 #include "cli/cli.h"
+#include "cli/frames.h"
 #include "cli/load.h"
 #include "cli/look.h"
 #include "cli/output.h"
@@ -7,6 +8,7 @@
 #include "cli/stats.h"
 #include "image/image.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -14,7 +16,7 @@
 #include <unistd.h>
 
 typedef struct values {
-    const char *output, *format, *transfer, *stats;
+    const char *output, *format, *transfer, *stats, *frames;
     int64_t maxval;  /* -1: not given */
     double exposure; /* NaN: not given */
     picture_values picture;
@@ -82,6 +84,14 @@ static const option options[] = {
      .help = "render and write only this part of the picture, in\n"
              "pixels from its top left corner",
      .also = "region|window"},
+    {.name = "frames",
+     .kind = OPTION_TEXT,
+     AT(frames),
+     .value = "A-B",
+     .help = "render these frames, each to a file of its own:\n"
+             "-o frame-%04d.png; or to standard output, one PPM or\n"
+             "PNG behind the other, as video encoders read them",
+     .also = "animation|range"},
     {.name = "stats",
      .kind = OPTION_TEXT,
      AT(stats),
@@ -139,6 +149,22 @@ static int check_values(const command *self, const values *v, const char *scene,
         return wrong_usage(self, "where to? Give -o FILE.png, .ppm, .pfm or .exr");
     }
     bool to_stdout = strcmp(v->output, "-") == 0;
+    frame_range range;
+    if (v->frames && !frames_parse(v->frames, &range)) {
+        print_error("--frames must be A-B, such as 0-47, from 0 to %d, not '%.100s'; see lavaray "
+                    "render --help",
+                    FRAME_MAX, v->frames);
+        return EXIT_USAGE;
+    }
+    if (v->frames && !to_stdout && !frames_named(v->output)) {
+        return wrong_usage(self, "with --frames the output needs one number: -o frame-%04d.png");
+    }
+    if (v->frames && v->load.frame) {
+        return wrong_usage(self, "--frame is for a single picture, --frames for several");
+    }
+    if (v->frames && v->stats) {
+        return wrong_usage(self, "--stats tells of a single picture, not of --frames");
+    }
     encoding->format = LR_FORMAT_PPM;
     if (v->format) {
         encoding->format = format_named(v->format);
@@ -163,6 +189,9 @@ static int check_values(const command *self, const values *v, const char *scene,
     if (floats && v->transfer && strcmp(v->transfer, "srgb") == 0) {
         return wrong_usage(self, "--transfer srgb is not for PFM and EXR, which are always linear");
     }
+    if (v->frames && to_stdout && floats) {
+        return wrong_usage(self, "frames go to standard output as PPM or PNG");
+    }
     if (check_look(self, &v->look, encoding->format) != EXIT_FINE) {
         return EXIT_USAGE;
     }
@@ -179,7 +208,13 @@ static int check_values(const command *self, const values *v, const char *scene,
     if (v->stats && strcmp(v->stats, v->output) == 0) {
         return wrong_usage(self, "the picture and the statistics have the same name");
     }
-    int code = check_writable(v->output);
+    char path[PATH_MAX];
+    if (v->frames && !(frames_path(v->output, range.last, path, sizeof path) &&
+                       frames_path(v->output, range.first, path, sizeof path))) {
+        print_error("%.100s: the path is too long", v->output);
+        return EXIT_FILE;
+    }
+    int code = check_writable(v->frames ? path : v->output);
     return code == EXIT_FINE && v->stats ? check_writable(v->stats) : code;
 }
 
@@ -198,9 +233,13 @@ static lr_render_options make_options(const values *v, progress *p)
     return made;
 }
 
-static int say_interrupted(void)
+static int say_interrupted(const values *v)
 {
-    print_error("interrupted, nothing written");
+    if (v->frames) {
+        print_error("interrupted in frame %d, which is not written", (int)v->load.frame);
+    } else {
+        print_error("interrupted, nothing written");
+    }
     return EXIT_INTERRUPTED;
 }
 
@@ -229,10 +268,16 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
     if (v->picture.filter) {
         fprintf(out, ", filter %s", v->picture.filter);
     }
+    if (v->load.frame) {
+        fprintf(out, ", frame %d", (int)v->load.frame);
+    }
     if (encoding->exposure != 0) {
         fprintf(out, ", exposure %.7g", (double)encoding->exposure);
     }
     describe_look(encoding, out);
+    if (record->denoiser) {
+        fprintf(out, ", denoised by %s", record->denoiser);
+    }
     if (encoding->format == LR_FORMAT_PNG && encoding->transfer == LR_TRANSFER_LINEAR) {
         fputs(", linear", out);
     }
@@ -240,18 +285,22 @@ static void describe_settings(const values *v, const lr_encoding *encoding,
 }
 
 /* Traces and writes; fills what record does not hold yet. */
-static int trace_and_write(const values *v, lr_device *device, const lr_scene *scene,
-                           lr_encoding encoding, progress *p, double start, render_record *record)
+static int trace_and_write(const values *v, lr_device *device, lr_denoiser *denoiser,
+                           const lr_scene *scene, lr_encoding encoding, progress *p, double start,
+                           render_record *record)
 {
     lr_error error = {0};
     lr_picture picture = {0};
     lr_render_options render_options = make_options(v, p);
     progress_phase(p, "building and compiling");
     lr_status status = lr_render(device, scene, &render_options, &picture, &record->stats, &error);
+    if (status == LR_OK) {
+        status = denoise_picture(denoiser, &picture, p, record, &error);
+    }
     progress_clear(p);
     int code;
     if (status == LR_ERROR_INTERRUPTED || (status == LR_OK && interrupted())) {
-        code = say_interrupted();
+        code = say_interrupted(v);
         goto done;
     }
     if (status != LR_OK) {
@@ -270,7 +319,7 @@ static int trace_and_write(const values *v, lr_device *device, const lr_scene *s
         {LR_STAMP_SOFTWARE, "lavaray " LR_VERSION},
         {LR_STAMP_SCENE, record->scene_hash},
         {LR_STAMP_SETTINGS, settings},
-        {LR_STAMP_PIXELS, record->stats.hash},
+        {LR_STAMP_PIXELS, record->denoiser ? record->denoised_hash : record->stats.hash},
     };
     encoding.texts = texts;
     encoding.text_count = sizeof texts / sizeof *texts;
@@ -297,69 +346,133 @@ done:
     return code;
 }
 
-static int run(const command *self, int argc, char **argv)
+/* What lasts from the first frame to the last. */
+typedef struct job {
+    values v;
+    const char *path; /* the scene's */
+    lr_encoding encoding;
+    progress progress;
+    lr_device *device;
+    lr_denoiser *denoiser; /* NULL: not asked for */
+    double device_seconds;
+} job;
+
+static int open_device(job *j)
 {
-    double start = seconds_now();
-    values v = {.picture = PICTURE_DEFAULTS, .maxval = -1, .exposure = NAN};
-    int operands;
-    parse_result parsed = options_parse(self, argc, argv, &v, &operands);
-    if (parsed != PARSE_OK) {
-        return (int)parsed;
+    lr_error error = {0};
+    if (j->v.look.denoise && lr_denoiser_open(&j->denoiser, &error)) {
+        progress_clear(&j->progress);
+        return report_failure(&error);
     }
-    const char *path = argv[0];
-    lr_encoding encoding = {0};
-    int code = check_values(self, &v, path, &encoding);
+    progress_phase(&j->progress, "opening device");
+    double start = seconds_now();
+    lr_device_desc desc = {.select = j->v.picture.device, .validation = validation_wanted()};
+    lr_status status = lr_device_open(&desc, &j->device, &error);
+    j->device_seconds = seconds_now() - start;
+    if (status == LR_OK) {
+        return EXIT_FINE;
+    }
+    progress_clear(&j->progress);
+    error.status = status;
+    return report_failure(&error);
+}
+
+/* One picture, from the scene's text to the file. *scene is that of the picture before, or NULL,
+ * and becomes that of this one. */
+static int render_picture(job *j, double start, lr_scene **scene)
+{
+    const values *v = &j->v;
+    progress_phase(&j->progress, "reading scene");
+    render_record record = {.scene = j->path, .output = v->output, .camera = v->picture.camera};
+    lr_scene_info scene_info;
+    lr_scene *previous = *scene;
+    load_values load = v->load;
+    load.previous = previous;
+    int code = load_scene(j->path, &load, v->quiet || previous, scene, &j->progress);
+    lr_scene_destroy(previous);
+    record.parse_seconds = seconds_now() - start;
+    if (code != EXIT_FINE) {
+        *scene = NULL;
+        return code;
+    }
+    if (interrupted()) {
+        progress_clear(&j->progress);
+        return say_interrupted(v);
+    }
+    lr_scene_get_info(*scene, &scene_info);
+    if (v->frames && !previous && !scene_info.moves && !v->quiet) {
+        progress_clear(&j->progress);
+        print_warning("nothing in %s has keys: all frames are the same", j->path);
+    }
+    record.scene_hash = scene_info.sha256;
+    record.exposure = isnan(v->exposure) ? (double)scene_info.exposure : v->exposure;
+    lr_encoding encoding = j->encoding;
+    encoding.exposure = (float)record.exposure;
+    choose_look(&v->look, &scene_info, &encoding);
+    record.tone = lr_tone_name(encoding.tone);
+    record.white = encoding.white;
+    code = j->device ? EXIT_FINE : open_device(j);
     if (code != EXIT_FINE) {
         return code;
     }
-    catch_interrupts();
-    progress p;
-    progress_start(&p, v.quiet);
+    record.device_seconds = j->device_seconds;
+    record.device = *lr_device_get_info(j->device);
+    record.exact = lr_device_is_exact(j->device);
+    return trace_and_write(v, j->device, j->denoiser, *scene, encoding, &j->progress, start,
+                           &record);
+}
 
-    lr_scene *scene = NULL;
-    lr_device *device = NULL;
-    progress_phase(&p, "reading scene");
-    render_record record = {.scene = path, .output = v.output, .camera = v.picture.camera};
-    lr_scene_info scene_info;
-    lr_error error = {0};
-    code = load_scene(path, &v.load, v.quiet, &scene, &p);
-    record.parse_seconds = seconds_now() - start;
+static int render_frames(job *j, lr_scene **scene)
+{
+    frame_range range;
+    char path[PATH_MAX];
+    const char *pattern = j->v.output;
+    bool to_stdout = strcmp(pattern, "-") == 0;
+    int code = EXIT_FINE;
+    frames_parse(j->v.frames, &range);
+    for (uint32_t frame = range.first; frame <= range.last && code == EXIT_FINE; frame++) {
+        j->v.load.frame = frame;
+        if (!to_stdout) {
+            frames_path(pattern, frame, path, sizeof path);
+            j->v.output = path;
+        }
+        if (same_file(j->v.output, j->path)) {
+            print_error("%s: the output would replace the scene", j->v.output);
+            return EXIT_USAGE;
+        }
+        code = render_picture(j, seconds_now(), scene);
+    }
+    return code;
+}
+
+static int run(const command *self, int argc, char **argv)
+{
+    double start = seconds_now();
+    job j = {.v = {.picture = PICTURE_DEFAULTS, .maxval = -1, .exposure = NAN}};
+    const values *v = &j.v;
+    int operands;
+    parse_result parsed = options_parse(self, argc, argv, &j.v, &operands);
+    if (parsed != PARSE_OK) {
+        return (int)parsed;
+    }
+    j.path = argv[0];
+    int code = check_values(self, v, j.path, &j.encoding);
     if (code != EXIT_FINE) {
-        goto done;
+        return code;
     }
-    if (interrupted()) {
-        progress_clear(&p);
-        code = say_interrupted();
-        goto done;
+    if (v->frames && strcmp(j.path, "-") == 0) {
+        return wrong_usage(self, "--frames reads the scene once a frame: give a file, not -");
     }
-    lr_scene_get_info(scene, &scene_info);
-    record.scene_hash = scene_info.sha256;
-    record.exposure = isnan(v.exposure) ? (double)scene_info.exposure : v.exposure;
-    encoding.exposure = (float)record.exposure;
-    encoding.maxval = v.maxval >= 0 ? (uint32_t)v.maxval : 0;
-    encoding.transfer =
-        v.transfer && strcmp(v.transfer, "linear") == 0 ? LR_TRANSFER_LINEAR : LR_TRANSFER_SRGB;
-    encoding.half = v.half;
-    choose_look(&v.look, &scene_info, &encoding);
-    record.tone = lr_tone_name(encoding.tone);
-    record.white = encoding.white;
-
-    progress_phase(&p, "opening device");
-    double device_start = seconds_now();
-    lr_device_desc desc = {.select = v.picture.device, .validation = validation_wanted()};
-    lr_status status = lr_device_open(&desc, &device, &error);
-    record.device_seconds = seconds_now() - device_start;
-    if (status != LR_OK) {
-        progress_clear(&p);
-        error.status = status;
-        code = report_failure(&error);
-        goto done;
-    }
-    record.device = *lr_device_get_info(device);
-    record.exact = lr_device_is_exact(device);
-    code = trace_and_write(&v, device, scene, encoding, &p, start, &record);
-done:
-    lr_device_close(device);
+    j.encoding.maxval = v->maxval >= 0 ? (uint32_t)v->maxval : 0;
+    j.encoding.transfer =
+        v->transfer && strcmp(v->transfer, "linear") == 0 ? LR_TRANSFER_LINEAR : LR_TRANSFER_SRGB;
+    j.encoding.half = v->half;
+    catch_interrupts();
+    progress_start(&j.progress, v->quiet);
+    lr_scene *scene = NULL;
+    code = v->frames ? render_frames(&j, &scene) : render_picture(&j, start, &scene);
+    lr_denoiser_close(j.denoiser);
+    lr_device_close(j.device);
     lr_scene_destroy(scene);
     return code;
 }
@@ -374,7 +487,9 @@ const command command_render = {
                "render fails or is interrupted.",
     .examples = "  lavaray render scenes/showcase.yaml -o showcase.png\n"
                 "  lavaray render room.yaml -o room.exr --size 1920x1080 --spp 64 --device gpu\n"
-                "  lavaray render room.yaml -o - | pnmtopng > room.png",
+                "  lavaray render room.yaml -o - | pnmtopng > room.png\n"
+                "  lavaray render turn.yaml --frames 0-47 -o - | ffmpeg -f image2pipe -framerate "
+                "24 -i - turn.mp4",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_operands = 1,

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "scene/camera.h"
 
 typedef struct hasher {
     SHA2_CTX context;
@@ -112,6 +113,12 @@ static void put_camera(hasher *h, const lr_camera *camera)
     put_number(h, camera->focus);
     put_count(h, camera->blades);
     put_number(h, camera->blade_rotation);
+    lr_camera closing = lr_camera_closing(camera);
+    put_vector(h, closing.from);
+    put_vector(h, closing.to);
+    put_vector(h, closing.up);
+    put_number(h, closing.fov);
+    put_number(h, closing.height);
 }
 
 static void put_light(hasher *h, const lr_light *light)

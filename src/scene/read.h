@@ -60,6 +60,16 @@ bool lr_read_number(lr_reader *reader, const lr_node *node, const lr_field *fiel
 bool lr_read_color(lr_reader *reader, const lr_node *node, const lr_field *field, const char *what,
                    lr_color *color);
 
+/* The keys of a value that changes from frame to frame, NULL of any other. */
+const lr_node *lr_keys_of(const lr_reader *reader, const lr_node *node);
+
+/* Reads what such a value is in the reader's frame: up to three numbers that `read` reads of each
+ * key, blended along straight lines; before the first key and after the last it stays. */
+typedef bool lr_component_reader(lr_reader *reader, const lr_node *node, const lr_field *field,
+                                 const char *what, double *value);
+bool lr_read_keys(lr_reader *reader, const lr_node *keys, const lr_field *field, const char *what,
+                  lr_component_reader *read, uint32_t count, double *value);
+
 /* Two colours, reported as `what`. */
 bool lr_read_colors(lr_reader *reader, const lr_node *node, const lr_field *field,
                     lr_color colors[2]);

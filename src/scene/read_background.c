@@ -93,7 +93,7 @@ static void read_kind(lr_reader *reader, const lr_node *node, const lr_record *r
 void lr_read_background(lr_reader *reader, const lr_node *node, const lr_field *field)
 {
     lr_color *colors = reader->scene->background.colors;
-    if (node->kind == LR_NODE_MAP) {
+    if (node->kind == LR_NODE_MAP && !lr_keys_of(reader, node)) {
         const lr_record *record = find_kind(reader, node);
         if (record)
             read_kind(reader, node, record);

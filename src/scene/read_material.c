@@ -35,7 +35,7 @@ static bool read_paint(lr_reader *reader, const lr_node *node, const lr_field *f
         lr_report_type(reader, node, field->name, lr_field_expected(field, expected));
         return false;
     }
-    if (node->kind != LR_NODE_MAP)
+    if (node->kind != LR_NODE_MAP || lr_keys_of(reader, node))
         return lr_read_color(reader, node, field, field->name, &pattern->colors[0]);
     const lr_record *record = NULL;
     for (uint32_t i = 0; i < lr_pattern_record_count && !record; i++)

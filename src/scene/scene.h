@@ -157,6 +157,8 @@ typedef struct lr_light {
     bool shadows;
 } lr_light;
 
+typedef enum lr_projection { LR_PERSPECTIVE, LR_ORTHOGRAPHIC, LR_PANORAMA } lr_projection;
+
 typedef enum lr_background_kind {
     LR_BACKGROUND_GRADIENT, /* or one colour */
     LR_BACKGROUND_IMAGE,
@@ -175,8 +177,6 @@ typedef struct lr_background {
     lr_color ground;    /* sky: the share of light that the ground reflects; 0..1 */
 } lr_background;
 
-typedef enum lr_projection { LR_PERSPECTIVE, LR_ORTHOGRAPHIC, LR_PANORAMA } lr_projection;
-
 typedef struct lr_camera {
     char *name; /* NULL for the only one */
     uint32_t line;
@@ -189,6 +189,12 @@ typedef struct lr_camera {
     double focus;    /* distance along the view that is sharp; 0: that of `to` */
     uint32_t blades; /* corners of the aperture, 3..32; 0: round */
     double blade_rotation; /* of the corner that else points up, clockwise in the picture */
+    double shutter;        /* fraction of a frame that it is open */
+    bool moves;            /* meanwhile; `closing` is where to */
+    struct {
+        lr_vec3 from, to, up;
+        double fov, height;
+    } closing;
 } lr_camera;
 
 struct lr_part; /* part.h */
@@ -212,6 +218,7 @@ struct lr_scene {
     uint32_t note_count;
     lr_light *lights; /* empty only when the scene says `lights: []` */
     uint32_t light_count;
+    bool moves;         /* some value changes from frame to frame */
     bool default_light; /* no `lights` key: the renderer adds one that suits the camera */
     lr_color ambient;
     lr_background background;

@@ -50,6 +50,8 @@ static void put_camera(lr_writer *writer)
                          "the camera's projection is left out, it is written as perspective");
     if (camera->aperture > 0)
         lr_writer_cannot(writer, "the camera's lens is left out, everything is in focus");
+    if (camera->moves)
+        lr_writer_cannot(writer, "the blur of the moving camera is left out");
     for (uint32_t i = 1; i < scene->camera_count; i++)
         lr_writer_cannot(writer, "cameras beside the first are left out");
 }
