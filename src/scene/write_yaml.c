@@ -73,11 +73,23 @@ static void put_colors(FILE *out, const lr_color colors[2])
     fputc(']', out);
 }
 
+/* Whether the stored value stands for one that other keys decide: 0, where the field itself begins
+ * above it. */
+static bool is_left_open(const lr_field *field, const void *value)
+{
+    if (field->type == LR_FIELD_INTEGER)
+        return field->minimum > 0 && *(const uint32_t *)value == 0;
+    return field->type == LR_FIELD_NUMBER && *(const double *)value == 0 &&
+           (field->minimum > 0 || (field->minimum == 0 && field->flags & LR_ABOVE));
+}
+
 /* Whether the stored value is the field's default. */
 static bool is_default(const lr_field *field, const void *value)
 {
     const double *d = field->fallback, *v = value;
-    if (field->flags & (LR_REQUIRED | LR_DERIVED))
+    if (field->flags & LR_DERIVED)
+        return is_left_open(field, value);
+    if (field->flags & LR_REQUIRED)
         return false;
     switch (field->type) {
     case LR_FIELD_NUMBER:
@@ -230,7 +242,7 @@ static void put_surroundings(lr_writer *writer)
     FILE *out = writer->out;
     mapping image = {.out = out}, fog = image;
     fputs("image: ", out);
-    put_record(&image, &lr_image_record, scene, scene->image.white == 0 ? "white" : NULL);
+    put_record(&image, &lr_image_record, scene, NULL);
     end_mapping(&image);
     fputs("\nambient: ", out);
     put_color(out, scene->ambient);
