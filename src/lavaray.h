@@ -58,6 +58,7 @@ typedef struct lr_load_options {
     bool allow_path;        /* files may name files outside of the scene's folder */
     uint64_t max_triangles; /* of all meshes; 0: 100 million */
     uint64_t max_memory;    /* bytes for files and meshes, about; 0: 8 GiB */
+    double frame;               /* in which values with keys are read */
     /* Called from time to time with what is being done and the fraction of it, 0 to 1; returning
      * false stops with LR_ERROR_INTERRUPTED. */
     bool (*progress)(void *user, const char *what, double fraction);
@@ -103,6 +104,7 @@ typedef struct lr_scene_info {
     uint64_t triangles;       /* of the meshes, each counted once */
     const char *const *notes; /* what was left out of other programs' files, and why; the scene's */
     uint32_t note_count;
+    bool moves; /* some value has keys: frames differ */
 } lr_scene_info;
 
 void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info);
@@ -242,6 +244,17 @@ typedef struct lr_text {
     const char *key, *value;
 } lr_text;
 
+/* What an EXR holds of the same pixels beside the picture: a channel NAME.C for each letter C of
+ * `channels`, such as "RGB" or "XYZ", or for "" one channel called NAME. Layers have 32 bits also
+ * where the picture has 16. */
+typedef struct lr_layer {
+    const char *name; /* 2 to 29 printable ASCII characters without spaces and dots; each once */
+    const char *channels;
+    const void *samples; /* floats, or uint32_t; channels * width * height, top row first */
+    bool integers;       /* the samples are uint32_t */
+    bool light;          /* "RGB" floats that white balance and exposure change as the picture */
+} lr_layer;
+
 #define LR_WHITE_MIN 1667 /* kelvin */
 #define LR_WHITE_MAX 25000
 
@@ -255,6 +268,8 @@ typedef struct lr_encoding {
     bool half;            /* EXR: 16-bit floats, those above 65504 become 65504; otherwise 32-bit */
     const lr_text *texts; /* PNG: text chunks, EXR: string attributes; PPM and PFM carry none */
     uint32_t text_count;
+    const lr_layer *layers; /* EXR alone */
+    uint32_t layer_count;
 } lr_encoding;
 
 /* The format that a path's ending names (.ppm .png .pfm .exr), false when it names none. */
@@ -265,6 +280,35 @@ bool lr_format_from_path(const char *path, lr_format *format);
 lr_status lr_picture_write(const lr_picture *picture, const char *path, const lr_encoding *encoding,
                            lr_error *error);
 
+/* ---- Denoising -----------------------------------------------------------------------------
+ *
+ * By Intel's Open Image Denoise, where it is installed (libOpenImageDenoise.so.2, .1 or .0). What
+ * it makes of a picture is not covered by the promise of equal bytes. */
+
+typedef struct lr_denoiser lr_denoiser;
+
+/* LR_ERROR_FILE: the library is not there or not complete; LR_ERROR_DEVICE: it refuses this
+ * computer. It stays loaded until the program ends. */
+lr_status lr_denoiser_open(lr_denoiser **denoiser, lr_error *error);
+void lr_denoiser_close(lr_denoiser *denoiser);
+
+/* "Open Image Denoise 2.3.0" */
+const char *lr_denoiser_name(const lr_denoiser *denoiser);
+
+typedef struct lr_denoise_options {
+    /* NULL, or what the same pixels show first: 3 * width * height floats each, top row first. They
+     * keep textures and edges sharp. Normals need albedo beside them. */
+    const float *albedo, *normal; /* 0 to 1; unit vectors */
+    /* As in lr_render_options; may be called on another thread. */
+    bool (*progress)(void *user, double fraction);
+    void *user;
+} lr_denoise_options;
+
+/* Denoises light, so before white balance, exposure and tone map. options may be NULL. When it
+ * fails the picture is as it was. */
+lr_status lr_denoiser_run(lr_denoiser *denoiser, lr_picture *picture,
+                          const lr_denoise_options *options, lr_error *error);
+
 /* ---- Rendering ---------------------------------------------------------------------------- */
 
 /* How light is found. */
@@ -274,8 +318,8 @@ typedef enum lr_integrator {
     LR_INTEGRATOR_PATH,    /* all ways of light, by chance: Kajiya's paths, 1986 */
 } lr_integrator;
 
-/* How samples weigh by their distance from the middle of the pixel: in each direction up to 0.5, 1 or
- * 1.5 pixels away. */
+/* How samples weigh by their distance from the middle of the pixel: in each direction up to 0.5, 1
+ * or 1.5 pixels away. */
 typedef enum lr_filter {
     LR_FILTER_DEFAULT, /* as the scene says */
     LR_FILTER_BOX,
@@ -296,6 +340,20 @@ typedef struct lr_render_options {
     struct {
         uint32_t x, y, width, height; /* of the picture; width 0: all of it */
     } crop;
+    /* Of the picture's samples only count from number `first` on; count 0: all. */
+    struct {
+        uint32_t first, count;
+    } sample_range;
+    /* 0, or how long the call may take: every pixel gets as many samples as fit, at least one and
+     * at most `samples` (0: 65536). The picture is that of so many samples; stats->samples tells
+     * how many. For LR_INTEGRATOR_PATH alone, whose first samples are those of any number, and
+     * neither with sample_range nor checkpoint. */
+    double seconds;
+    /* NULL, or a file that keeps what has been traced, now and then and when the render ends early,
+     * so that a later call with the same scene and settings goes on from there. The caller deletes
+     * it once the picture is safe. LR_ERROR_FILE when it is anything else already. */
+    const char *checkpoint;
+    double checkpoint_seconds; /* between two writings, at least; 0: 30 */
     /* How the work is cut up. The picture does not depend on these; zero picks good values. */
     uint32_t tile_size;  /* pixels along a tile's side */
     uint32_t chunk_rays; /* rays handed to the device at once */
@@ -309,9 +367,16 @@ typedef struct lr_render_options {
     void *user;
 } lr_render_options;
 
+#define LR_SETTINGS_TEXT 512
+
 typedef struct lr_render_stats {
     uint32_t width, height, samples, depth, seed;
     lr_integrator integrator;
+    uint32_t first_sample, sample_count; /* of the samples: which were asked for */
+    char settings[LR_SETTINGS_TEXT]; /* what the pixels depend on beside the scene, as files say it
+                                      */
+    double resumed;               /* the share of the samples that a checkpoint brought, 0 to 1 */
+    char checkpoint_problem[256]; /* why the last checkpoint could not be written; "" */
     struct {
         uint64_t traced, hit;
     } primary, reflected, refracted, shadow, bounced; /* bounced: the later rays of paths */
@@ -333,6 +398,29 @@ typedef struct lr_render_stats {
 /* Renders the scene; the caller frees *picture. stats may be NULL. */
 lr_status lr_render(lr_device *device, const lr_scene *scene, const lr_render_options *options,
                     lr_picture *picture, lr_render_stats *stats, lr_error *error);
+
+/* Renders the scene as lr_render does and writes the exact sums of its pixels to path: a part, for
+ * lr_merge_parts. It is an EXR file; docs/parts.md has its channels. */
+lr_status lr_render_part(lr_device *device, const lr_scene *scene, const lr_render_options *options,
+                         const char *path, lr_render_stats *stats, lr_error *error);
+
+/* A picture made of parts. */
+typedef struct lr_merge_info {
+    char scene_hash[65]; /* of the scene's text, as in lr_scene_info; of the first part's */
+    char settings[LR_SETTINGS_TEXT]; /* as in lr_render_stats */
+    char missing[200];               /* samples that no part has, such as "16-31, 48"; "" */
+    char hash[65];                   /* of the picture; see lr_picture_hash */
+    float exposure, white;           /* image.exposure and image.white of the scene, */
+    lr_tone tone;                    /* ... and image.tone */
+    uint32_t samples;                /* of all parts together */
+} lr_merge_info;
+
+/* Adds up the parts at these paths, in any order; the picture has the pixels that lr_render makes
+ * of all samples. The caller frees it. LR_ERROR_FILE when a file cannot be read or is no part, when
+ * parts belong to different pictures, or have samples in common; without `partial` also when
+ * samples are missing. info may be NULL. */
+lr_status lr_merge_parts(const char *const *paths, uint32_t count, bool partial,
+                         lr_picture *picture, lr_merge_info *info, lr_error *error);
 
 /* ---- Explaining a pixel --------------------------------------------------------------------
  *

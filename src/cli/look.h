@@ -1,4 +1,4 @@
-/* How light becomes the colours of a picture file: tone map and white balance. */
+/* How light becomes the colours of a picture file: denoising, white balance, tone map. */
 #ifndef LR_CLI_LOOK_H
 #define LR_CLI_LOOK_H
 
@@ -7,17 +7,20 @@
 
 #include "cli/cli.h"
 
-/* A member of a command's values. */
+struct progress;
+struct render_record;
+
+/* A member of encoding_values. */
 typedef struct look_values {
     const char *tone; /* NULL: not given */
     double white;     /* 0: not given */
 } look_values;
 
-/* The lines of the table; `type` has a member `look` of the above. */
+/* The lines of the table; `type` has a member `encoding` of encoding_values. */
 #define LOOK_OPTIONS(type)                                                                         \
     {.name = "tone",                                                                               \
      .kind = OPTION_CHOICE,                                                                        \
-     .offset = offsetof(type, look.tone),                                                          \
+     .offset = offsetof(type, encoding.look.tone),                                                 \
      .value = "MAP",                                                                               \
      .choices = "none|reinhard|aces|agx",                                                          \
      .help = "how light becomes a colour of PPM and PNG: none\n"                                   \
@@ -25,8 +28,8 @@ typedef struct look_values {
              "scene's",                                                                            \
      .also = "tonemap|tone-map|view-transform"},                                                   \
     {                                                                                              \
-        .name = "white", .kind = OPTION_REAL, .offset = offsetof(type, look.white), .value = "K",  \
-        .min = LR_WHITE_MIN, .max = LR_WHITE_MAX,                                                  \
+        .name = "white", .kind = OPTION_REAL, .offset = offsetof(type, encoding.look.white),       \
+        .value = "K", .min = LR_WHITE_MIN, .max = LR_WHITE_MAX,                                    \
         .help = "white balance: light of this colour temperature, 1667\n"                          \
                 "to 25000 kelvin, becomes white; default: the scene's",                            \
         .also = "temperature|white-balance|kelvin"                                                 \
@@ -40,5 +43,10 @@ void choose_look(const look_values *values, const lr_scene_info *scene, lr_encod
 
 /* ", tone aces, white 3200" of what is applied. */
 void describe_look(const lr_encoding *encoding, FILE *out);
+
+/* Denoises the picture and notes it in the record; nothing if denoiser is NULL. The bar, which may
+ * be asked to stop it, is cleared. */
+lr_status denoise_picture(lr_denoiser *denoiser, lr_picture *picture, struct progress *bar,
+                          struct render_record *record, lr_error *error);
 
 #endif
