@@ -484,7 +484,8 @@ const command command_render = {
     .examples = "  lavaray render scenes/showcase.yaml -o showcase.png\n"
                 "  lavaray render room.yaml -o room.exr --size 1920x1080 --spp 64 --device gpu\n"
                 "  lavaray render room.yaml -o - | pnmtopng > room.png\n"
-                "  lavaray render room.yaml -o a.exr --spp 64 --sample-range 0-31",
+                "  lavaray render room.yaml -o a.exr --spp 64 --sample-range 0-31\n"
+                "  lavaray render turn.yaml --frames 0-47 -o turn-%04d.png",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_operands = 1,

@@ -74,12 +74,24 @@ static void put_colors(FILE *out, const lr_color colors[2])
     fputc(']', out);
 }
 
+/* Whether a derived value was not given: it is zero then, where zero cannot be given. */
+static bool is_absent(const lr_field *field, const void *value)
+{
+    if (!(field->minimum > 0))
+        return false;
+    if (field->type == LR_FIELD_NUMBER)
+        return *(const double *)value == 0;
+    return field->type == LR_FIELD_INTEGER && *(const uint32_t *)value == 0;
+}
+
 /* Whether the stored value is the field's default. */
 static bool is_default(const lr_field *field, const void *value)
 {
     const double *d = field->fallback, *v = value;
-    if (field->flags & (LR_REQUIRED | LR_DERIVED))
+    if (field->flags & LR_REQUIRED)
         return false;
+    if (field->flags & LR_DERIVED)
+        return is_absent(field, value);
     switch (field->type) {
     case LR_FIELD_NUMBER:
         return *v == d[0];
@@ -235,7 +247,7 @@ static void put_surroundings(lr_writer *writer)
     FILE *out = writer->out;
     mapping image = {.out = out}, fog = image;
     fputs("image: ", out);
-    put_record(&image, &lr_image_record, scene, scene->image.white == 0 ? "white" : NULL);
+    put_record(&image, &lr_image_record, scene, NULL);
     end_mapping(&image);
     fputs("\nambient: ", out);
     put_color(out, scene->ambient);
