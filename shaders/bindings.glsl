@@ -48,6 +48,8 @@ layout(constant_id = LR_SPEC_FLAT_EMITTERS) const bool has_flat_emitters = true;
 layout(constant_id = LR_SPEC_DISK_EMITTERS) const bool has_disk_emitters = true;
 layout(constant_id = LR_SPEC_TRIANGLE_EMITTERS) const bool has_triangle_emitters = true;
 layout(constant_id = LR_SPEC_SPHERE_EMITTERS) const bool has_sphere_emitters = true;
+layout(constant_id = LR_SPEC_ENVIRONMENT) const bool has_environment = true;
+layout(constant_id = LR_SPEC_SUN) const bool has_sun = true;
 layout(constant_id = LR_SPEC_EMITS_FRONT) const bool has_emits_front = true;
 layout(constant_id = LR_SPEC_CAMERA) const bool has_lens = true;
 

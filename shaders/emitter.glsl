@@ -187,6 +187,101 @@ light_sample sample_listed_light(uint index, vec3 position, vec2 u)
     return s;
 }
 
+// ---- The background ----
+
+// Steps before texel x of a row of the picture, which begins at row `at` of the table.
+uint steps_before(uint at, uint x)
+{
+    return texel_word(scene_row(at + (x >> 2)), x);
+}
+
+uint texel_table(gpu_environment e, uint y)
+{
+    return e.rows + e.height + y * ((e.width + 3u) >> 2);
+}
+
+// How many steps of a row of the picture are texel x's, if `before` come before it.
+uint steps_of(gpu_environment e, uint at, uint x, uint before)
+{
+    uint next = min(x + 1u, e.width - 1u);
+    uint end = mix(steps_before(at, next), uint(LR_CHOICE_STEPS), x + 1u == e.width);
+    return end - before;
+}
+
+vec3 environment(vec3 d)
+{
+    return background(d);
+}
+
+// The pdf, per solid angle, with which sample_light_at goes towards d to see the background.
+float environment_pdf(vec3 d)
+{
+    float pdf = 0.0;
+    if (has_environment) {
+        gpu_environment e = load_environment();
+        vec2 uv = environment_uv(e, d);
+        uint x = min(uint(int(max(uv.x, 0.0) * float(e.width))), e.width - 1u);
+        uint y = min(uint(int(uv.y * float(e.height))), e.height - 1u);
+        uvec4 row = scene_row(e.rows + y);
+        uint at = texel_table(e, y);
+        float share = float(row.y) * float(steps_of(e, at, x, steps_before(at, x)));
+        share = share * 3.552713678800501e-15; // 2^-48
+        pdf = e.pdf * share * ex_rcp(uintBitsToFloat(row.w));
+        if (has_sun && in_sun(e, d))
+            pdf = pdf + e.sun_pdf;
+    }
+    return pdf;
+}
+
+// The last of `count` entries that has at most `steps` before it. A whole row of the picture, or one of
+// its texels.
+uint last_before(uint at, uint count, uint steps, bool texels)
+{
+    uint found = 0u;
+    for (uint width = 8192u;;) {
+        uint next = found + width;
+        uint entry = min(next, count - 1u);
+        uint before = texels ? steps_before(at, entry) : scene_row(at + entry).x;
+        found = next < count && before <= steps ? next : found;
+        width >>= 1;
+        if (width == 0u)
+            break;
+    }
+    return found;
+}
+
+vec3 sample_picture(gpu_environment e, vec2 u)
+{
+    uint steps_y = uint(int(u.y * LR_CHOICE_STEPS)), steps_x = uint(int(u.x * LR_CHOICE_STEPS));
+    uint y = last_before(e.rows, e.height, steps_y, false);
+    uvec4 row = scene_row(e.rows + y);
+    uint at = texel_table(e, y);
+    uint x = last_before(at, e.width, steps_x, true);
+    uint before = steps_before(at, x);
+    // What is left of both numbers tells where in the texel.
+    float down = (float(steps_y - row.x) + 0.5) * ex_rcp(float(max(row.y, 1u)));
+    float along = (float(steps_x - before) + 0.5) *
+                  ex_rcp(float(max(steps_of(e, at, x, before), 1u)));
+    bool lower = y >= (e.height + 1u) >> 1;
+    float from_pole = uintBitsToFloat(row.z) + uintBitsToFloat(row.w) * (lower ? 1.0 - down : down);
+    float cosine = 1.0 - 2.0 * from_pole, sine = 2.0 * ex_sqrt(from_pole * (1.0 - from_pole));
+    cosine = lower ? -cosine : cosine;
+    vec2 around = ex_cos_sin_turns((float(x) + along) * ex_rcp(float(e.width)) - 0.5) * sine;
+    return ex_normalize(e.right * around.y + e.up * cosine + e.forward * around.x);
+}
+
+// The picture and the sun are one light with two ways to sample it: their densities add up.
+light_sample sample_environment(bool sun, vec2 u)
+{
+    gpu_environment e = load_environment();
+    vec3 wi = sample_picture(e, u);
+    if (has_sun)
+        wi = sun ? sample_cone(e.sun, e.sun_spread, u) : wi;
+    float pdf = environment_pdf(wi);
+    vec3 value = environment(wi) * ex_rcp(max(pdf, 1.0e-20));
+    return light_sample(wi, LR_T_MAX, pdf > 1.0e-20 ? value : vec3(0.0), pdf);
+}
+
 // ---- All of them ----
 
 light_sample sample_light_at(vec3 position, float choice, vec2 u)
@@ -203,6 +298,9 @@ light_sample sample_light_at(vec3 position, float choice, vec2 u)
             s = sample_listed_light(e.light, position, u);
             s.value = s.value * e.inv_pdf;
         }
+        bool sun = has_sun && kind == LR_GPU_EMITTER_SUN;
+        if (has_environment && (sun || kind == LR_GPU_EMITTER_ENVIRONMENT))
+            s = sample_environment(sun, u);
     }
     return s;
 }
@@ -224,16 +322,6 @@ float emitter_pdf(uint object, vec3 origin, vec3 direction, float t, vec3 ng)
         }
     }
     return pdf;
-}
-
-vec3 environment(vec3 d)
-{
-    return background(d);
-}
-
-float environment_pdf(vec3 d)
-{
-    return 0.0;
 }
 
 #endif

@@ -141,6 +141,25 @@ vec2 ex_cos_sin_turns(float turns)
     return mix(turned, -turned, bvec2(((q + 1u) & 2u) != 0u, (q & 2u) != 0u));
 }
 
+// The angle of (x, y) in turns, -1/2..1/2, counter-clockwise from (1, 0), within 6e-8, if the greater
+// of |x| and |y| is within 2^-100 .. 2^100; 0 at the origin.
+float ex_angle_turns(float y, float x)
+{
+    float ax = abs(x), ay = abs(y), high = max(ax, ay), low = min(ax, ay);
+    float a = low * ex_rcp(max(high, 7.888609052210118e-31)), z = a * a;
+    float p = -7.257134420797229e-4 * z + 3.784787142649293e-3;
+    p = p * z - 9.363045915961266e-3;
+    p = p * z + 1.5706786885857582e-2;
+    p = p * z - 2.2286929190158844e-2;
+    p = p * z + 3.1778406351804733e-2;
+    p = p * z - 5.3049229085445404e-2;
+    p = p * z + 0.15915492177009583;
+    float turns = a * p; // 0 .. 1/8
+    turns = mix(turns, 0.25 - turns, ay > ax);
+    turns = mix(turns, 0.5 - turns, x < 0.0);
+    return mix(turns, -turns, y < 0.0);
+}
+
 // Whether all components are finite.
 bool ex_is_finite(vec3 v)
 {

@@ -92,7 +92,9 @@ typedef struct vec4 {
 #define LR_SPEC_SPHERE_EMITTERS 43
 #define LR_SPEC_EMITS_FRONT 44 /* some surface shines on one side alone */
 #define LR_SPEC_CAMERA 45 /* some camera is more than a pinhole, or the filter than a box */
-#define LR_SPEC_COUNT 46
+#define LR_SPEC_ENVIRONMENT 46 /* the background is a picture or the sky, */
+#define LR_SPEC_SUN 47         /* with a sun */
+#define LR_SPEC_COUNT 48
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -363,6 +365,8 @@ LR_ROWS(gpu_light, 4)
 #define LR_GPU_EMITTER_DISK 3u
 #define LR_GPU_EMITTER_TRIANGLE 4u
 #define LR_GPU_EMITTER_SPHERE 5u
+#define LR_GPU_EMITTER_ENVIRONMENT 6u
+#define LR_GPU_EMITTER_SUN 7u
 #define LR_GPU_EMITTER_KIND 7u
 #define LR_GPU_EMITTER_FRONT 8u /* shines to the side that the normal points to */
 #define LR_GPU_EMITTER_BACK 16u
@@ -406,6 +410,36 @@ struct gpu_object_emitter {
     uint unused1;
 };
 LR_ROWS(gpu_object_emitter, 2)
+
+/* A picture of all directions: at angle theta from `up` and azimuth phi from `forward` to the right it
+ * has the coordinates (1/2 + phi / 2 pi, theta / pi). How likely a path goes towards a texel is told
+ * by two tables: of the picture's rows, each a gpu_sky_row, and behind them of the texels within each,
+ * four words in a row: the steps of 1 / LR_CHOICE_STEPS before each. */
+struct gpu_environment {
+    vec3 right; /* unit */
+    uint texture;
+    vec3 up;
+    float intensity;
+    vec3 forward;
+    uint rows;
+    vec3 sun;         /* unit, towards its middle */
+    float sun_spread; /* 1 - cos of half the angle that it fills */
+    vec3 sun_radiance;
+    float pdf;     /* that a path chooses the picture, times width / 4 pi */
+    float sun_pdf; /* that it chooses the sun, per solid angle */
+    uint width;
+    uint height;
+    uint unused;
+};
+LR_ROWS(gpu_environment, 6)
+
+struct gpu_sky_row {
+    uint begin; /* steps before the row */
+    uint steps;
+    float near;   /* sin(theta / 2)^2 where the row is nearest to its pole, measured from there, */
+    float extent; /* and from there to its other edge; the lower half has the lower pole */
+};
+LR_ROWS(gpu_sky_row, 1)
 
 /* All primitives are numbered, kind by kind. A list holds one kind: those from number `begin` up to
  * `end`; the record of number i is at row base + i * its rows (modulo 2^32). Bounded primitives
@@ -494,7 +528,7 @@ struct gpu_frame {
     uint choices;         /* rows: of the first gpu_choice, */
     uint object_emitters; /* and gpu_object_emitter */
     uint choice_shift;    /* LR_CHOICE_BITS - log2 of how many choices there are */
-    uint unused_emitters;
+    uint environment;     /* row of the gpu_environment */
     gpu_lens lens;
 };
 LR_ROWS(gpu_frame, 29)

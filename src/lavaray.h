@@ -58,6 +58,7 @@ typedef struct lr_load_options {
     bool allow_path;        /* files may name files outside of the scene's folder */
     uint64_t max_triangles; /* of all meshes; 0: 100 million */
     uint64_t max_memory;    /* bytes for files and meshes, about; 0: 8 GiB */
+    double frame;               /* in which values with keys are read */
     /* Called from time to time with what is being done and the fraction of it, 0 to 1; returning
      * false stops with LR_ERROR_INTERRUPTED. */
     bool (*progress)(void *user, const char *what, double fraction);
@@ -103,6 +104,7 @@ typedef struct lr_scene_info {
     uint64_t triangles;       /* of the meshes, each counted once */
     const char *const *notes; /* what was left out of other programs' files, and why; the scene's */
     uint32_t note_count;
+    bool moves; /* some value has keys: frames differ */
 } lr_scene_info;
 
 void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info);
@@ -242,6 +244,17 @@ typedef struct lr_text {
     const char *key, *value;
 } lr_text;
 
+/* What an EXR holds of the same pixels beside the picture: a channel NAME.C for each letter C of
+ * `channels`, such as "RGB" or "XYZ", or for "" one channel called NAME. Layers have 32 bits also
+ * where the picture has 16. */
+typedef struct lr_layer {
+    const char *name; /* 2 to 29 printable ASCII characters without spaces and dots; each once */
+    const char *channels;
+    const void *samples; /* floats, or uint32_t; channels * width * height, top row first */
+    bool integers;       /* the samples are uint32_t */
+    bool light;          /* "RGB" floats that white balance and exposure change as the picture */
+} lr_layer;
+
 #define LR_WHITE_MIN 1667 /* kelvin */
 #define LR_WHITE_MAX 25000
 
@@ -255,6 +268,8 @@ typedef struct lr_encoding {
     bool half;            /* EXR: 16-bit floats, those above 65504 become 65504; otherwise 32-bit */
     const lr_text *texts; /* PNG: text chunks, EXR: string attributes; PPM and PFM carry none */
     uint32_t text_count;
+    const lr_layer *layers; /* EXR alone */
+    uint32_t layer_count;
 } lr_encoding;
 
 /* The format that a path's ending names (.ppm .png .pfm .exr), false when it names none. */
@@ -264,6 +279,35 @@ bool lr_format_from_path(const char *path, lr_format *format);
  * only after its successor is complete. */
 lr_status lr_picture_write(const lr_picture *picture, const char *path, const lr_encoding *encoding,
                            lr_error *error);
+
+/* ---- Denoising -----------------------------------------------------------------------------
+ *
+ * By Intel's Open Image Denoise, where it is installed (libOpenImageDenoise.so.2, .1 or .0). What
+ * it makes of a picture is not covered by the promise of equal bytes. */
+
+typedef struct lr_denoiser lr_denoiser;
+
+/* LR_ERROR_FILE: the library is not there or not complete; LR_ERROR_DEVICE: it refuses this
+ * computer. It stays loaded until the program ends. */
+lr_status lr_denoiser_open(lr_denoiser **denoiser, lr_error *error);
+void lr_denoiser_close(lr_denoiser *denoiser);
+
+/* "Open Image Denoise 2.3.0" */
+const char *lr_denoiser_name(const lr_denoiser *denoiser);
+
+typedef struct lr_denoise_options {
+    /* NULL, or what the same pixels show first: 3 * width * height floats each, top row first. They
+     * keep textures and edges sharp. Normals need albedo beside them. */
+    const float *albedo, *normal; /* 0 to 1; unit vectors */
+    /* As in lr_render_options; may be called on another thread. */
+    bool (*progress)(void *user, double fraction);
+    void *user;
+} lr_denoise_options;
+
+/* Denoises light, so before white balance, exposure and tone map. options may be NULL. When it
+ * fails the picture is as it was. */
+lr_status lr_denoiser_run(lr_denoiser *denoiser, lr_picture *picture,
+                          const lr_denoise_options *options, lr_error *error);
 
 /* ---- Rendering ---------------------------------------------------------------------------- */
 

@@ -1,6 +1,7 @@
 #include "base/exact.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -37,4 +38,19 @@ double lr_exp2(double x)
     double power;
     memcpy(&power, &bits, sizeof power);
     return power * sum;
+}
+
+/* 2 atan(sqrt((1 - x) / (1 + x))), the arctangent's argument brought below tan(pi / 16) by halving
+ * the angle twice, where its series is cut behind a term of 1e-17. */
+double lr_acos(double x)
+{
+    bool obtuse = x < 0;
+    x = fabs(x);
+    double t = sqrt((1 - x) / (1 + x)), sum = 0;
+    for (int i = 0; i < 2; i++)
+        t = t / (1 + sqrt(1 + t * t));
+    for (int k = 23; k >= 1; k -= 2)
+        sum = 1.0 / k - sum * t * t;
+    double angle = 8 * t * sum;
+    return obtuse ? 3.14159265358979323846 - angle : angle;
 }

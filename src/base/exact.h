@@ -9,4 +9,7 @@ double lr_log2(double x);
 /* 2^x, exact for whole x, with a relative error below 1e-15 for others, |x| <= 1000. */
 double lr_exp2(double x);
 
+/* The angle whose cosine is x, in radians, within 1e-15; -1 <= x <= 1. */
+double lr_acos(double x);
+
 #endif

@@ -33,6 +33,8 @@ int load_scene(const char *path, const load_values *values, bool quiet, lr_scene
         .progress = update,
         .user = bar,
         .files = values->files,
+        .previous = values->previous,
+        .frame = (double)values->frame,
     };
     lr_status status = lr_scene_load(path, &options, scene, &report, &error);
     int code = EXIT_FINE;

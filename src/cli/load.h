@@ -12,7 +12,9 @@ struct progress;
 typedef struct load_values {
     bool allow_path;
     int64_t max_triangles, max_memory; /* 0: not given */
-    lr_file_list *files;               /* of lr_load_options */
+    int64_t frame;
+    lr_file_list *files; /* of lr_load_options, as is the next */
+    const lr_scene *previous;
 } load_values;
 
 /* The lines of the table; `type` has a member `load` of the above. */
@@ -30,6 +32,14 @@ typedef struct load_values {
          .min = 1,                                                                                 \
          .max = 1000000000,                                                                        \
          .help = "refuse models with more; default: 100000000"},                                   \
+        {.name = "frame",                                                                          \
+         .kind = OPTION_INTEGER,                                                                   \
+         .offset = offsetof(type, load.frame),                                                     \
+         .value = "N",                                                                             \
+         .min = 0,                                                                                 \
+         .max = 999999,                                                                            \
+         .help = "of scenes whose values have keys; default: 0",                                   \
+         .also = "at"},                                                                            \
     {                                                                                              \
         .name = "max-memory", .kind = OPTION_BYTES, .offset = offsetof(type, load.max_memory),     \
         .value = "SIZE", .min = 1 << 20,                                                           \

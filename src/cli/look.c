@@ -1,5 +1,8 @@
 #include "cli/look.h"
 
+#include "cli/progress.h"
+#include "cli/stats.h"
+
 #include <string.h>
 
 static bool holds_light(lr_format format)
@@ -41,4 +44,23 @@ void describe_look(const lr_encoding *encoding, FILE *out)
     if (encoding->white != 0) {
         fprintf(out, ", white %.7g", (double)encoding->white);
     }
+}
+
+lr_status denoise_picture(lr_denoiser *denoiser, lr_picture *picture, progress *bar,
+                          render_record *record, lr_error *error)
+{
+    if (!denoiser) {
+        return LR_OK;
+    }
+    const lr_denoise_options options = {.progress = progress_update, .user = bar};
+    double start = seconds_now();
+    progress_phase(bar, "denoising");
+    lr_status status = lr_denoiser_run(denoiser, picture, &options, error);
+    progress_clear(bar);
+    if (status == LR_OK) {
+        record->denoiser = lr_denoiser_name(denoiser);
+        record->denoise_seconds = seconds_now() - start;
+        lr_picture_hash(picture, record->denoised_hash);
+    }
+    return status;
 }

@@ -1,4 +1,4 @@
-/* How light becomes the colours of a picture file: tone map and white balance. */
+/* How light becomes the colours of a picture file: denoising, white balance, tone map. */
 #ifndef LR_CLI_LOOK_H
 #define LR_CLI_LOOK_H
 
@@ -7,10 +7,14 @@
 
 #include "cli/cli.h"
 
+struct progress;
+struct render_record;
+
 /* A member of encoding_values. */
 typedef struct look_values {
     const char *tone; /* NULL: not given */
     double white;     /* 0: not given */
+    bool denoise;
 } look_values;
 
 /* The lines of the table; `type` has a member `encoding` of encoding_values. */
@@ -24,12 +28,20 @@ typedef struct look_values {
              "(clipped at 1), reinhard, aces or agx; default: the\n"                               \
              "scene's",                                                                            \
      .also = "tonemap|tone-map|view-transform"},                                                   \
+        {.name = "white",                                                                          \
+         .kind = OPTION_REAL,                                                                      \
+         .offset = offsetof(type, encoding.look.white),                                            \
+         .value = "K",                                                                             \
+         .min = LR_WHITE_MIN,                                                                      \
+         .max = LR_WHITE_MAX,                                                                      \
+         .help = "white balance: light of this colour temperature, 1667\n"                         \
+                 "to 25000 kelvin, becomes white; default: the scene's",                           \
+         .also = "temperature|white-balance|kelvin"},                                              \
     {                                                                                              \
-        .name = "white", .kind = OPTION_REAL, .offset = offsetof(type, encoding.look.white),       \
-        .value = "K", .min = LR_WHITE_MIN, .max = LR_WHITE_MAX,                                    \
-        .help = "white balance: light of this colour temperature, 1667\n"                          \
-                "to 25000 kelvin, becomes white; default: the scene's",                            \
-        .also = "temperature|white-balance|kelvin"                                                 \
+        .name = "denoise", .kind = OPTION_FLAG, .offset = offsetof(type, encoding.look.denoise),   \
+        .help = "remove noise with Open Image Denoise, where it is\n"                              \
+                "installed; its bytes may differ between computers",                               \
+        .also = "denoiser|oidn"                                                                    \
     }
 
 /* Whether the flags suit the format. Returns an exit_code, having printed what is wrong. */
@@ -40,5 +52,10 @@ void choose_look(const look_values *values, const lr_scene_info *scene, lr_encod
 
 /* ", tone aces, white 3200" of what is applied. */
 void describe_look(const lr_encoding *encoding, FILE *out);
+
+/* Denoises the picture and notes it in the record; nothing if denoiser is NULL. The bar, which may
+ * be asked to stop it, is cleared. */
+lr_status denoise_picture(lr_denoiser *denoiser, lr_picture *picture, struct progress *bar,
+                          struct render_record *record, lr_error *error);
 
 #endif

@@ -1,11 +1,13 @@
 #include "cli/cli.h"
 #include "cli/encoding.h"
+#include "cli/frames.h"
 #include "cli/load.h"
 #include "cli/output.h"
 #include "cli/picture.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -13,7 +15,7 @@
 #include <unistd.h>
 
 typedef struct values {
-    const char *stats, *checkpoint;
+    const char *stats, *checkpoint, *frames;
     encoding_values encoding;
     picture_values picture;
     option_rectangle crop;
@@ -39,6 +41,14 @@ static const option options[] = {
      .help = "render and write only this part of the picture, in\n"
              "pixels from its top left corner",
      .also = "region|window"},
+    {.name = "frames",
+     .kind = OPTION_TEXT,
+     AT(frames),
+     .value = "A-B",
+     .help = "render these frames, each to a file of its own:\n"
+             "-o frame-%04d.png; or to standard output, one PPM or\n"
+             "PNG behind the other, as video encoders read them",
+     .also = "animation|range"},
     {.name = "sample-range",
      .kind = OPTION_RANGE,
      AT(sample_range),
@@ -118,7 +128,8 @@ static int check_part(const command *self, const values *v, const lr_encoding *e
         return wrong_usage(self, "--sample-range writes a part, which is an EXR file: -o FILE.exr");
     }
     const encoding_values *e = &v->encoding;
-    if (e->half || e->transfer || !isnan(e->exposure) || e->look.tone || e->look.white != 0) {
+    if (e->half || e->transfer || !isnan(e->exposure) || e->look.tone || e->look.white != 0 ||
+        e->look.denoise) {
         return wrong_usage(self,
                            "--sample-range writes exact sums: how they become a picture is for "
                            "lavaray merge to say");
@@ -151,6 +162,43 @@ static int check_names(const command *self, const values *v, const char *scene)
     return EXIT_FINE;
 }
 
+/* What --frames means, and whether the first and the last can be written; others can then, too. */
+static int check_frames(const command *self, const values *v, const lr_encoding *encoding)
+{
+    const char *output = v->encoding.output;
+    bool to_stdout = strcmp(output, "-") == 0;
+    bool floats = encoding->format == LR_FORMAT_PFM || encoding->format == LR_FORMAT_EXR;
+    frame_range range;
+    if (!frames_parse(v->frames, &range)) {
+        print_error("--frames must be A-B, such as 0-47, from 0 to %d, not '%.100s'; see lavaray "
+                    "render --help",
+                    FRAME_MAX, v->frames);
+        return EXIT_USAGE;
+    }
+    if (!to_stdout && !frames_named(output)) {
+        return wrong_usage(self, "with --frames the output needs one number: -o frame-%04d.png");
+    }
+    if (v->load.frame) {
+        return wrong_usage(self, "--frame is for a single picture, --frames for several");
+    }
+    if (v->stats) {
+        return wrong_usage(self, "--stats tells of a single picture, not of --frames");
+    }
+    if (v->checkpoint) {
+        return wrong_usage(self, "--checkpoint is for a single picture, not for --frames");
+    }
+    if (to_stdout && floats) {
+        return wrong_usage(self, "frames go to standard output as PPM or PNG");
+    }
+    char path[PATH_MAX];
+    if (!frames_path(output, range.last, path, sizeof path) ||
+        !frames_path(output, range.first, path, sizeof path)) {
+        print_error("%.100s: the path is too long", output);
+        return EXIT_FILE;
+    }
+    return check_writable(path);
+}
+
 /* What the flags mean together, and whether the files can be written. */
 static int check_values(const command *self, const values *v, const char *scene,
                         lr_encoding *encoding)
@@ -164,6 +212,9 @@ static int check_values(const command *self, const values *v, const char *scene,
     }
     if (code == EXIT_FINE) {
         code = check_names(self, v, scene);
+    }
+    if (code == EXIT_FINE) {
+        code = v->frames ? check_frames(self, v, encoding) : check_writable(v->encoding.output);
     }
     if (code == EXIT_FINE && v->stats) {
         code = check_writable(v->stats);
@@ -196,7 +247,9 @@ static lr_render_options make_options(const values *v, progress *p)
 /* problem: why the checkpoint could not be written, ""; NULL: nothing has been traced yet. */
 static int say_interrupted(const values *v, const char *problem)
 {
-    if (problem && problem[0]) {
+    if (v->frames) {
+        print_error("interrupted in frame %d, which is not written", (int)v->load.frame);
+    } else if (problem && problem[0]) {
         print_error("interrupted, and the checkpoint could not be written: %s", problem);
     } else if (problem && v->checkpoint && access(v->checkpoint, F_OK) == 0) {
         print_error("interrupted; %s holds what has been traced, the same command goes on from it",
@@ -212,10 +265,16 @@ static int write_result(const values *v, const lr_encoding *encoding, const lr_p
                         render_record *record)
 {
     double start = seconds_now();
+    const picture_origin origin = {
+        .scene_hash = record->scene_hash,
+        .settings = record->stats.settings,
+        .pixel_hash = record->denoiser ? record->denoised_hash : record->stats.hash,
+        .denoiser = record->denoiser,
+        .frame = (unsigned)v->load.frame,
+    };
     int code = v->sample_range.given
                    ? EXIT_FINE
-                   : write_picture(picture, v->encoding.output, *encoding, record->scene_hash,
-                                   record->stats.settings, record->stats.hash);
+                   : write_picture(picture, v->encoding.output, *encoding, &origin);
     if (code == EXIT_FINE && v->checkpoint) {
         unlink(v->checkpoint); /* it may never have been written */
     }
@@ -226,9 +285,9 @@ static int write_result(const values *v, const lr_encoding *encoding, const lr_p
 }
 
 /* Traces and writes; fills what record does not hold yet. */
-static int trace_and_write(const values *v, lr_device *device, const lr_scene *scene,
-                           const lr_encoding *encoding, progress *p, double start,
-                           render_record *record)
+static int trace_and_write(const values *v, lr_device *device, lr_denoiser *denoiser,
+                           const lr_scene *scene, const lr_encoding *encoding, progress *p,
+                           double start, render_record *record)
 {
     lr_error error = {0};
     lr_picture picture = {0};
@@ -238,6 +297,9 @@ static int trace_and_write(const values *v, lr_device *device, const lr_scene *s
         v->sample_range.given
             ? lr_render_part(device, scene, &wanted, v->encoding.output, &record->stats, &error)
             : lr_render(device, scene, &wanted, &picture, &record->stats, &error);
+    if (status == LR_OK) {
+        status = denoise_picture(denoiser, &picture, p, record, &error);
+    }
     progress_clear(p);
     int code;
     if (status == LR_ERROR_INTERRUPTED ||
@@ -271,65 +333,130 @@ done:
     return code;
 }
 
-static int run(const command *self, int argc, char **argv)
+/* What lasts from the first frame to the last. */
+typedef struct job {
+    values v;
+    const char *path; /* the scene's */
+    lr_encoding encoding;
+    progress progress;
+    lr_device *device;
+    lr_denoiser *denoiser; /* NULL: not asked for */
+    double device_seconds;
+} job;
+
+static int open_device(job *j)
 {
-    double start = seconds_now();
-    values v = {.picture = PICTURE_DEFAULTS, .encoding = ENCODING_DEFAULTS};
-    int operands;
-    parse_result parsed = options_parse(self, argc, argv, &v, &operands);
-    if (parsed != PARSE_OK) {
-        return (int)parsed;
+    lr_error error = {0};
+    if (j->v.encoding.look.denoise && lr_denoiser_open(&j->denoiser, &error)) {
+        progress_clear(&j->progress);
+        return report_failure(&error);
     }
-    const char *path = argv[0];
-    lr_encoding encoding = {0};
-    int code = check_values(self, &v, path, &encoding);
+    progress_phase(&j->progress, "opening device");
+    double start = seconds_now();
+    lr_device_desc desc = {.select = j->v.picture.device, .validation = validation_wanted()};
+    lr_status status = lr_device_open(&desc, &j->device, &error);
+    j->device_seconds = seconds_now() - start;
+    if (status == LR_OK) {
+        return EXIT_FINE;
+    }
+    progress_clear(&j->progress);
+    error.status = status;
+    return report_failure(&error);
+}
+
+/* One picture, from the scene's text to the file. *scene is that of the picture before, or NULL,
+ * and becomes that of this one. */
+static int render_picture(job *j, double start, lr_scene **scene)
+{
+    const values *v = &j->v;
+    progress_phase(&j->progress, "reading scene");
+    render_record record = {
+        .scene = j->path, .output = v->encoding.output, .camera = v->picture.camera};
+    lr_scene_info scene_info;
+    lr_scene *previous = *scene;
+    load_values load = v->load;
+    load.previous = previous;
+    int code = load_scene(j->path, &load, v->quiet || previous, scene, &j->progress);
+    lr_scene_destroy(previous);
+    record.parse_seconds = seconds_now() - start;
+    if (code != EXIT_FINE) {
+        *scene = NULL;
+        return code;
+    }
+    if (interrupted()) {
+        progress_clear(&j->progress);
+        return say_interrupted(v, NULL);
+    }
+    lr_scene_get_info(*scene, &scene_info);
+    if (v->frames && !previous && !scene_info.moves && !v->quiet) {
+        progress_clear(&j->progress);
+        print_warning("nothing in %s has keys: all frames are the same", j->path);
+    }
+    record.scene_hash = scene_info.sha256;
+    record.exposure =
+        isnan(v->encoding.exposure) ? (double)scene_info.exposure : v->encoding.exposure;
+    lr_encoding encoding = j->encoding;
+    finish_encoding(&v->encoding, &scene_info, &encoding);
+    record.tone = lr_tone_name(encoding.tone);
+    record.white = encoding.white;
+    code = j->device ? EXIT_FINE : open_device(j);
     if (code != EXIT_FINE) {
         return code;
     }
-    catch_interrupts();
-    progress p;
-    progress_start(&p, v.quiet);
+    record.device_seconds = j->device_seconds;
+    record.device = *lr_device_get_info(j->device);
+    record.exact = lr_device_is_exact(j->device);
+    return trace_and_write(v, j->device, j->denoiser, *scene, &encoding, &j->progress, start,
+                           &record);
+}
 
-    lr_scene *scene = NULL;
-    lr_device *device = NULL;
-    progress_phase(&p, "reading scene");
-    render_record record = {.scene = path, .output = v.encoding.output, .camera = v.picture.camera};
-    lr_scene_info scene_info;
-    lr_error error = {0};
-    code = load_scene(path, &v.load, v.quiet, &scene, &p);
-    record.parse_seconds = seconds_now() - start;
+static int render_frames(job *j, lr_scene **scene)
+{
+    frame_range range;
+    char path[PATH_MAX];
+    const char *pattern = j->v.encoding.output;
+    bool to_stdout = strcmp(pattern, "-") == 0;
+    int code = EXIT_FINE;
+    frames_parse(j->v.frames, &range);
+    for (uint32_t frame = range.first; frame <= range.last && code == EXIT_FINE; frame++) {
+        j->v.load.frame = frame;
+        if (!to_stdout) {
+            frames_path(pattern, frame, path, sizeof path);
+            j->v.encoding.output = path;
+        }
+        if (same_file(j->v.encoding.output, j->path)) {
+            print_error("%s: the output would replace the scene", j->v.encoding.output);
+            return EXIT_USAGE;
+        }
+        code = render_picture(j, seconds_now(), scene);
+    }
+    return code;
+}
+
+static int run(const command *self, int argc, char **argv)
+{
+    double start = seconds_now();
+    job j = {.v = {.picture = PICTURE_DEFAULTS, .encoding = ENCODING_DEFAULTS}};
+    const values *v = &j.v;
+    int operands;
+    parse_result parsed = options_parse(self, argc, argv, &j.v, &operands);
+    if (parsed != PARSE_OK) {
+        return (int)parsed;
+    }
+    j.path = argv[0];
+    int code = check_values(self, v, j.path, &j.encoding);
     if (code != EXIT_FINE) {
-        goto done;
+        return code;
     }
-    if (interrupted()) {
-        progress_clear(&p);
-        code = say_interrupted(&v, NULL);
-        goto done;
+    if (v->frames && strcmp(j.path, "-") == 0) {
+        return wrong_usage(self, "--frames reads the scene once a frame: give a file, not -");
     }
-    lr_scene_get_info(scene, &scene_info);
-    record.scene_hash = scene_info.sha256;
-    finish_encoding(&v.encoding, &scene_info, &encoding);
-    record.exposure =
-        isnan(v.encoding.exposure) ? (double)scene_info.exposure : v.encoding.exposure;
-    record.tone = lr_tone_name(encoding.tone);
-    record.white = encoding.white;
-
-    progress_phase(&p, "opening device");
-    double device_start = seconds_now();
-    lr_device_desc desc = {.select = v.picture.device, .validation = validation_wanted()};
-    lr_status status = lr_device_open(&desc, &device, &error);
-    record.device_seconds = seconds_now() - device_start;
-    if (status != LR_OK) {
-        progress_clear(&p);
-        error.status = status;
-        code = report_failure(&error);
-        goto done;
-    }
-    record.device = *lr_device_get_info(device);
-    record.exact = lr_device_is_exact(device);
-    code = trace_and_write(&v, device, scene, &encoding, &p, start, &record);
-done:
-    lr_device_close(device);
+    catch_interrupts();
+    progress_start(&j.progress, v->quiet);
+    lr_scene *scene = NULL;
+    code = v->frames ? render_frames(&j, &scene) : render_picture(&j, start, &scene);
+    lr_denoiser_close(j.denoiser);
+    lr_device_close(j.device);
     lr_scene_destroy(scene);
     return code;
 }
@@ -345,7 +472,9 @@ const command command_render = {
     .examples = "  lavaray render scenes/showcase.yaml -o showcase.png\n"
                 "  lavaray render room.yaml -o room.exr --size 1920x1080 --spp 64 --device gpu\n"
                 "  lavaray render room.yaml -o - | pnmtopng > room.png\n"
-                "  lavaray render room.yaml -o a.exr --spp 64 --sample-range 0-31",
+                "  lavaray render room.yaml -o a.exr --spp 64 --sample-range 0-31\n"
+                "  lavaray render turn.yaml --frames 0-47 -o - |\n"
+                "      ffmpeg -f image2pipe -framerate 24 -i - turn.mp4",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_operands = 1,

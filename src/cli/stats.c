@@ -101,6 +101,9 @@ void print_record(const render_record *r)
     print_count("not traced: depth", s->dropped_depth);
     print_count("not traced: weight", s->dropped_weight);
     print_count("media lost: nesting", s->dropped_nesting);
+    if (r->denoiser) {
+        fprintf(stderr, "denoised by %s in %.3f s\n", r->denoiser, r->denoise_seconds);
+    }
     fprintf(stderr,
             "seconds  %.3f: device %.3f, scene %.3f, build %.3f, upload %.3f,\n"
             "         compile %.3f, trace %.3f, read back %.3f, write %.3f; longest pass %.3f\n"
@@ -165,6 +168,11 @@ static json_t *record_json(const render_record *r)
         json_object_set_new(picture, "sample_range",
                             json_pack("[I,I]", (json_int_t)s->first_sample,
                                       (json_int_t)s->first_sample + s->sample_count - 1));
+    }
+    if (r->denoiser) {
+        json_object_set_new(picture, "denoised",
+                            json_pack("{s:s, s:s, s:f}", "by", r->denoiser, "sha256",
+                                      r->denoised_hash, "seconds", r->denoise_seconds));
     }
     json_t *rays = json_pack(
         "{s:o, s:o, s:o, s:o, s:o, s:I}", "primary", rays_json(s->primary.traced, s->primary.hit),

@@ -145,6 +145,36 @@ static bool is_key(const char *key)
     return length >= 1 && length <= 31;
 }
 
+/* Of EXR's channels too, one of which a layer without letters is: R, G, B, A and Y are the
+ * picture's. */
+static bool is_layer(const lr_layer *layer)
+{
+    size_t letters = strlen(layer->channels), length = strlen(layer->name);
+    bool good = is_key(layer->name) && length >= 2 && length <= 29 && !strchr(layer->name, '.');
+    for (size_t i = 0; i < letters; i++) {
+        char letter[2] = {layer->channels[i]};
+        good &= is_key(letter) && letter[0] != '.' && !strchr(layer->channels + i + 1, letter[0]);
+    }
+    return good && (!layer->light || (strcmp(layer->channels, "RGB") == 0 && !layer->integers));
+}
+
+static lr_status check_layers(const lr_encoding *encoding, lr_error *error)
+{
+    if (encoding->layer_count && encoding->format != LR_FORMAT_EXR)
+        return lr_fail(error, LR_ERROR_ARGUMENT, "only EXR files have layers");
+    for (uint32_t i = 0; i < encoding->layer_count; i++) {
+        const lr_layer *layer = &encoding->layers[i];
+        bool good = is_layer(layer);
+        for (uint32_t k = 0; k < i; k++)
+            good &= strcmp(layer->name, encoding->layers[k].name) != 0;
+        if (!good)
+            return lr_fail(error, LR_ERROR_ARGUMENT,
+                           "a layer '%s' with channels '%s' is not possible, or there are two",
+                           layer->name, layer->channels);
+    }
+    return LR_OK;
+}
+
 static lr_status check(const lr_picture *picture, const lr_encoding *encoding, uint32_t maxval,
                        lr_error *error)
 {
@@ -171,7 +201,7 @@ static lr_status check(const lr_picture *picture, const lr_encoding *encoding, u
         return lr_fail(error, LR_ERROR_ARGUMENT,
                        "maxval is %u, but PNG samples have 8 or 16 bits; expected 255 or 65535",
                        maxval);
-    return LR_OK;
+    return check_layers(encoding, error);
 }
 
 lr_status lr_picture_encode(const lr_picture *picture, const lr_encoding *encoding,

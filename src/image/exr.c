@@ -9,11 +9,22 @@
 
 enum { ZIP_LEVEL = 4 }; /* OpenEXR's own choice: higher ones take long for little */
 
+/* The picture, or a layer. */
+typedef struct exr_source {
+    const char *name; /* "" of the picture */
+    const char *letters;
+    size_t components; /* of a pixel: as many as there are letters, or 1 */
+    exr_pixel_type_t type;
+    const unsigned char *samples; /* as they are in memory */
+    void *changed; /* room for the rows of a chunk, where they are not written as they are */
+} exr_source;
+
 typedef struct exr_output {
     const image_encoder *encoder;
     exr_context_t context;
     image_buffer file;
-    void *rows; /* of one chunk, 3 * width samples each */
+    exr_source *sources; /* the picture first */
+    uint32_t source_count;
     exr_result_t (*compress)(exr_encode_pipeline_t *);
     char reason[128]; /* the library's, the first one */
 } exr_output;
@@ -60,22 +71,92 @@ uint16_t image_half(float value)
     return (uint16_t)(sign | (magnitude - 0x38000000) >> 13);
 }
 
-/* The header: R, G and B in the default layer, as other programs expect them; the windows begin at
- * the origin. */
+static size_t sample_size(const exr_source *source)
+{
+    return source->type == EXR_PIXEL_HALF ? 2 : 4;
+}
+
+enum { CHANNEL_NAME = 32 };
+
+static void name_channel(const exr_source *source, size_t component, char name[CHANNEL_NAME])
+{
+    if (source->letters[0])
+        snprintf(name, CHANNEL_NAME, "%s%s%c", source->name, source->name[0] ? "." : "",
+                 source->letters[component]);
+    else
+        snprintf(name, CHANNEL_NAME, "%s", source->name);
+}
+
+/* Fills the sources: the picture as R, G and B in the default layer, as other programs expect it,
+ * and the layers. */
+static exr_result_t list_sources(exr_output *output)
+{
+    const lr_encoding *encoding = output->encoder->encoding;
+    output->source_count = encoding->layer_count + 1;
+    output->sources = lr_alloc(output->source_count, sizeof *output->sources);
+    if (!output->sources)
+        return EXR_ERR_OUT_OF_MEMORY;
+    output->sources[0] = (exr_source){
+        .name = "",
+        .letters = "RGB",
+        .components = 3,
+        .type = encoding->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
+        .samples = (const unsigned char *)output->encoder->picture->pixels,
+    };
+    for (uint32_t i = 0; i < encoding->layer_count; i++) {
+        const lr_layer *layer = &encoding->layers[i];
+        output->sources[i + 1] = (exr_source){
+            .name = layer->name,
+            .letters = layer->channels,
+            .components = layer->channels[0] ? strlen(layer->channels) : 1,
+            .type = layer->integers ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT,
+            .samples = layer->samples,
+        };
+    }
+    return EXR_ERR_SUCCESS;
+}
+
+/* Makes room for the rows of a chunk of those that are light. */
+static exr_result_t reserve_rows(exr_output *output, int32_t lines)
+{
+    const lr_encoding *encoding = output->encoder->encoding;
+    for (uint32_t i = 0; i < output->source_count; i++) {
+        if (i > 0 && !encoding->layers[i - 1].light)
+            continue;
+        exr_source *source = &output->sources[i];
+        source->changed =
+            lr_alloc(3 * (size_t)output->encoder->picture->width, (size_t)lines * sizeof(float));
+        if (!source->changed)
+            return EXR_ERR_OUT_OF_MEMORY;
+    }
+    return EXR_ERR_SUCCESS;
+}
+
+static exr_result_t add_channels(const exr_output *output, const exr_source *source, bool light)
+{
+    exr_result_t code = EXR_ERR_SUCCESS;
+    for (size_t i = 0; i < source->components && code == EXR_ERR_SUCCESS; i++) {
+        char name[CHANNEL_NAME];
+        name_channel(source, i, name);
+        code =
+            exr_add_channel(output->context, 0, name, source->type,
+                            light ? EXR_PERCEPTUALLY_LOGARITHMIC : EXR_PERCEPTUALLY_LINEAR, 1, 1);
+    }
+    return code;
+}
+
+/* The windows begin at the origin. */
 static exr_result_t write_header(const exr_output *output)
 {
-    static const char *const names[] = {"R", "G", "B"};
     const lr_picture *picture = output->encoder->picture;
     const lr_encoding *encoding = output->encoder->encoding;
-    exr_pixel_type_t type = encoding->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
     int part;
     exr_result_t code = exr_add_part(output->context, NULL, EXR_STORAGE_SCANLINE, &part);
     if (code == EXR_ERR_SUCCESS)
         code = exr_initialize_required_attr_simple(output->context, 0, (int32_t)picture->width,
                                                    (int32_t)picture->height, EXR_COMPRESSION_ZIP);
-    for (int i = 0; i < 3 && code == EXR_ERR_SUCCESS; i++)
-        code =
-            exr_add_channel(output->context, 0, names[i], type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    for (uint32_t i = 0; i < output->source_count && code == EXR_ERR_SUCCESS; i++)
+        code = add_channels(output, &output->sources[i], i == 0 || encoding->layers[i - 1].light);
     for (uint32_t i = 0; i < encoding->text_count && code == EXR_ERR_SUCCESS; i++)
         code = exr_attr_set_string(output->context, 0, encoding->texts[i].key,
                                    encoding->texts[i].value);
@@ -93,41 +174,56 @@ static exr_result_t compress(exr_encode_pipeline_t *pipeline)
     return code;
 }
 
-static void convert_rows(const exr_output *output, const exr_chunk_info_t *chunk)
+/* The rows of a chunk as they are to be written. */
+static const unsigned char *chunk_rows(const exr_output *output, const exr_source *source,
+                                       const exr_chunk_info_t *chunk)
 {
-    const image_encoder *encoder = output->encoder;
-    size_t row = 3 * (size_t)encoder->picture->width, count = row * (size_t)chunk->height;
-    const float *in = encoder->picture->pixels + (size_t)chunk->start_y * row;
-    float *floats = output->rows;
-    uint16_t *halves = output->rows;
-    for (size_t i = 0; i < count; i += 3) {
+    size_t row = source->components * output->encoder->picture->width;
+    const unsigned char *rows = source->samples + (size_t)chunk->start_y * row * sizeof(float);
+    if (!source->changed)
+        return rows;
+    const float *in = (const float *)(const void *)rows;
+    float *floats = source->changed;
+    uint16_t *halves = source->changed;
+    for (size_t i = 0; i < row * (size_t)chunk->height; i += 3) {
         float pixel[3];
-        image_adjust(encoder, in + i, pixel);
+        image_adjust(output->encoder, in + i, pixel);
         for (int k = 0; k < 3; k++)
-            if (encoder->encoding->half)
+            if (source->type == EXR_PIXEL_HALF)
                 halves[i + k] = image_half(pixel[k]);
             else
                 floats[i + k] = pixel[k];
+    }
+    return source->changed;
+}
+
+/* Tells the pipeline's channels, which are in an order of their own, where their samples are. */
+static void place_channels(const exr_output *output, const exr_source *source,
+                           exr_encode_pipeline_t *pipeline)
+{
+    const unsigned char *rows = chunk_rows(output, source, &pipeline->chunk);
+    for (size_t i = 0; i < source->components; i++) {
+        char name[CHANNEL_NAME];
+        name_channel(source, i, name);
+        for (int k = 0; k < pipeline->channel_count; k++) {
+            exr_coding_channel_info_t *channel = &pipeline->channels[k];
+            if (strcmp(channel->channel_name, name) != 0)
+                continue;
+            channel->encode_from_ptr = rows + i * sample_size(source);
+            channel->user_pixel_stride = (int32_t)(source->components * sample_size(source));
+            channel->user_line_stride = channel->user_pixel_stride * pipeline->chunk.width;
+        }
     }
 }
 
 static exr_result_t write_chunk(exr_output *output, const exr_chunk_info_t *chunk)
 {
-    size_t sample = output->encoder->encoding->half ? sizeof(uint16_t) : sizeof(float);
     exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
     exr_result_t code = exr_encoding_initialize(output->context, 0, chunk, &pipeline);
     if (code != EXR_ERR_SUCCESS)
         return code;
-    convert_rows(output, chunk);
-    for (int i = 0; i < pipeline.channel_count; i++) {
-        exr_coding_channel_info_t *channel = &pipeline.channels[i];
-        size_t place = channel->channel_name[0] == 'R'   ? 0
-                       : channel->channel_name[0] == 'G' ? 1
-                                                         : 2;
-        channel->encode_from_ptr = (const uint8_t *)output->rows + place * sample;
-        channel->user_pixel_stride = (int32_t)(3 * sample);
-        channel->user_line_stride = channel->user_pixel_stride * chunk->width;
-    }
+    for (uint32_t i = 0; i < output->source_count; i++)
+        place_channels(output, &output->sources[i], &pipeline);
     code = exr_encoding_choose_default_routines(output->context, 0, &pipeline);
     if (code == EXR_ERR_SUCCESS) {
         output->compress = pipeline.compress_fn;
@@ -142,15 +238,14 @@ static exr_result_t write_chunk(exr_output *output, const exr_chunk_info_t *chun
 static exr_result_t write_file(exr_output *output)
 {
     const lr_picture *picture = output->encoder->picture;
-    exr_result_t code = write_header(output);
     int32_t lines = 0;
+    exr_result_t code = list_sources(output);
+    if (code == EXR_ERR_SUCCESS)
+        code = write_header(output);
     if (code == EXR_ERR_SUCCESS)
         code = exr_get_scanlines_per_chunk(output->context, 0, &lines);
-    if (code != EXR_ERR_SUCCESS)
-        return code;
-    output->rows = lr_alloc(3 * (size_t)picture->width, (size_t)lines * sizeof(float));
-    if (!output->rows)
-        return EXR_ERR_OUT_OF_MEMORY;
+    if (code == EXR_ERR_SUCCESS)
+        code = reserve_rows(output, lines);
     for (int64_t y = 0; y < picture->height && code == EXR_ERR_SUCCESS; y += lines) {
         exr_chunk_info_t chunk = {0};
         code = exr_write_scanline_chunk_info(output->context, 0, (int)y, &chunk);
@@ -180,7 +275,9 @@ lr_status image_encode_exr(const image_encoder *encoder, unsigned char **bytes, 
         exr_result_t finished = exr_finish(&output.context);
         code = code == EXR_ERR_SUCCESS ? finished : code;
     }
-    free(output.rows);
+    for (uint32_t i = 0; output.sources && i < output.source_count; i++)
+        free(output.sources[i].changed);
+    free(output.sources);
     if (code == EXR_ERR_SUCCESS) {
         *bytes = output.file.bytes;
         *size = output.file.size;

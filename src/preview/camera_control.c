@@ -26,8 +26,10 @@ static double clamp(double value, double low, double high)
     return value < low ? low : value > high ? high : value;
 }
 
+/* In a hand, a camera stands still while its shutter is open. */
 static lr_camera checked(lr_camera moved, lr_camera before)
 {
+    moved.moves = false;
     return lr_camera_usable(&moved) ? moved : before;
 }
 

@@ -232,34 +232,37 @@ static double power_of(const lr_light *light, double radius)
     return value * share * lr_exp2((2 - light->falloff) * lr_log2(radius));
 }
 
-static void add_light(lr_emitters *list, uint32_t index, double power)
+static void add_light(lr_emitters *list, uint32_t kind, uint32_t index, double power)
 {
     lr_emitter *d = power > 0 ? add(list) : NULL;
     if (!d)
         return;
-    *d = (lr_emitter){.record = {.kind = LR_GPU_EMITTER_LIGHT, .light = index},
-                      .power = power,
-                      .object = LR_NONE};
+    *d = (lr_emitter){.record = {.kind = kind, .light = index}, .power = power, .object = LR_NONE};
 }
 
 /* The light that follows the camera gives way to any other. */
-static void add_lights(lr_emitters *list, const lr_primitive *primitives)
+static void add_lights(lr_emitters *list, const lr_primitive *primitives,
+                       const lr_packed_scene *packed)
 {
     const lr_scene *scene = list->scene;
+    uint32_t lights = scene->default_light ? 0 : scene->light_count;
+    if (lights > 0 || packed->environment_light > 0) {
+        double radius = radius_of(scene, primitives), across = PI * radius * radius;
+        add_light(list, LR_GPU_EMITTER_ENVIRONMENT, 0, packed->environment_light * across);
+        add_light(list, LR_GPU_EMITTER_SUN, 0, packed->sun_light * across);
+        for (uint32_t i = 0; i < lights; i++)
+            add_light(list, LR_GPU_EMITTER_LIGHT, i, power_of(&scene->lights[i], radius));
+    }
     if (scene->default_light && list->count == 0)
-        add_light(list, 0, 1);
-    if (scene->default_light || scene->light_count == 0)
-        return;
-    double radius = radius_of(scene, primitives);
-    for (uint32_t i = 0; i < scene->light_count; i++)
-        add_light(list, i, power_of(&scene->lights[i], radius));
+        add_light(list, LR_GPU_EMITTER_LIGHT, 0, 1);
 }
 
-bool lr_emitters_find(const lr_scene *scene, const lr_primitive *primitives, lr_emitters *list)
+bool lr_emitters_find(const lr_scene *scene, const lr_primitive *primitives,
+                      const lr_packed_scene *packed, lr_emitters *list)
 {
     *list = (lr_emitters){.scene = scene};
     for (uint32_t i = 0; i < scene->object_count; i++)
         add_object(list, i, &primitives[i]);
-    add_lights(list, primitives);
+    add_lights(list, primitives, packed);
     return !list->no_memory;
 }

@@ -9,7 +9,7 @@ typedef struct lr_emitter {
     struct gpu_emitter record; /* but for the probabilities */
     double area;               /* square metres; 0 of a light */
     double power;
-    uint32_t object; /* LR_NONE: one of the lights */
+    uint32_t object; /* LR_NONE: one of the lights, or the background */
 } lr_emitter;
 
 /* Those of one object stand together. */
@@ -22,6 +22,7 @@ typedef struct lr_emitters {
 
 /* All of the scene's, at most LR_CHOICES_MAX: what is too many, or too small or large for floats,
  * is left out. primitives[i] is object i. False when memory is out; the caller frees the items. */
-bool lr_emitters_find(const lr_scene *scene, const lr_primitive *primitives, lr_emitters *list);
+bool lr_emitters_find(const lr_scene *scene, const lr_primitive *primitives,
+                      const lr_packed_scene *packed, lr_emitters *list);
 
 #endif

@@ -198,8 +198,8 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
                                 .trees = settings->trees ? settings->trees : &own_trees};
     packed->trees->keep = packed->trees == settings->trees;
     packed->frame = (struct gpu_frame){
-        .background_low = lr_pack_vec3(scene->background[0]),
-        .background_high = lr_pack_vec3(scene->background[1]),
+        .background_low = lr_pack_vec3(scene->background.colors[0]),
+        .background_high = lr_pack_vec3(scene->background.colors[1]),
         .background_up = lr_pack_vec3(scene->background_up),
         .min_weight = (float)scene->image.min_weight,
         .fog_color = lr_pack_vec3(scene->fog_color),
@@ -215,10 +215,14 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
     if (!status)
         status = pack_lights(scene, packed, error);
     if (!status)
+        status = lr_pack_environment(scene, packed, error);
+    if (!status)
         status = lr_pack_objects(scene, packed, error);
     if (!status)
         status = lr_pack_textures(scene, packed, error);
     packed->trees = NULL;
+    free(packed->sky.floats);
+    packed->sky = (lr_texture){.floats = NULL};
     lr_trees_free(&own_trees);
     if (!status)
         lr_pack_camera(scene, settings, packed);

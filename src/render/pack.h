@@ -45,6 +45,8 @@ typedef struct lr_packed_scene {
     uint32_t leaf_size, threads; /* of lr_settings */
     lr_trees *trees;             /* while it is being packed */
     lr_places places;
+    lr_texture sky; /* of a background that is the sky, while it is being packed */
+    double environment_light, sun_light; /* their radiance times their solid angle */
     struct gpu_frame frame;
     uint32_t constants[LR_SPEC_COUNT]; /* but for those that only the device decides */
 } lr_packed_scene;
@@ -64,11 +66,16 @@ uint32_t lr_pack_rows(lr_packed_scene *packed, const void *record, uint32_t rows
 /* Makes room for that many more rows. */
 bool lr_pack_reserve(lr_packed_scene *packed, uint64_t rows);
 
+/* pack_environment.c: a background that is a picture; how likely paths choose the picture and its
+ * sun is filled in later. */
+lr_status lr_pack_environment(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);
+void lr_pack_environment_choice(lr_packed_scene *packed, double picture, double sun);
+
 /* pack_objects.c: the primitives, objects and media of the scene. */
 lr_status lr_pack_objects(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);
 
-/* pack_textures.c: first makes room for the records of the scene's textures, texture i in row i,
- * and last fills them and appends their texels. */
+/* pack_textures.c: first makes room for the records of the scene's textures, texture i in row i
+ * and behind them the sky's, and last fills them and appends their texels. */
 lr_status lr_pack_texture_records(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);
 lr_status lr_pack_textures(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);
 

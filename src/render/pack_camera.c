@@ -49,6 +49,24 @@ static void pack_view(const lr_camera *camera, const lr_settings *settings, stru
     frame->lens.up = lr_pack_vec3(lr_vec3_scale(up, camera->aperture / 2));
 }
 
+static vec3 step_between(vec3 from, vec3 to)
+{
+    return (vec3){to.x - from.x, to.y - from.y, to.z - from.z};
+}
+
+/* How the frame's vectors change while the shutter is open. */
+static void pack_motion(const lr_camera *camera, const lr_settings *settings,
+                        struct gpu_frame *frame)
+{
+    struct gpu_frame end = *frame;
+    lr_camera closing = lr_camera_closing(camera);
+    pack_view(&closing, settings, &end);
+    frame->lens.origin_step = step_between(frame->origin, end.origin);
+    frame->lens.forward_step = step_between(frame->forward, end.forward);
+    frame->lens.right_step = step_between(frame->pixel_right, end.pixel_right);
+    frame->lens.down_step = step_between(frame->pixel_down, end.pixel_down);
+}
+
 uint32_t lr_pack_filter(const lr_scene *scene, const lr_settings *settings)
 {
     lr_filter filter =
@@ -75,6 +93,7 @@ void lr_pack_camera(const lr_scene *scene, const lr_settings *settings, lr_packe
     struct gpu_frame *frame = &packed->frame;
     pack_view(camera, settings, frame);
     pack_lens(camera, settings, &frame->lens);
+    pack_motion(camera, settings, frame);
     frame->lens.kind |= lr_pack_filter(scene, settings);
     frame->half_width = (float)(settings->width * 0.5);
     frame->half_height = (float)(settings->height * 0.5);

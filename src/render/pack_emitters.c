@@ -9,15 +9,21 @@
 /* Of all choices a share goes to all sources alike: power tells little of what lights a corner. */
 #define EVEN_SHARE 0.125
 
+static bool is_flat(uint32_t kind)
+{
+    return kind == LR_GPU_EMITTER_RECTANGLE || kind == LR_GPU_EMITTER_DISK ||
+           kind == LR_GPU_EMITTER_TRIANGLE;
+}
+
 static void note_use(const lr_emitters *list, uint32_t *constants)
 {
     constants[LR_SPEC_EMITTERS] = list->count > 0;
     for (uint32_t i = 0; i < list->count; i++) {
         uint32_t kind = list->items[i].record.kind & LR_GPU_EMITTER_KIND;
-        bool sphere = kind == LR_GPU_EMITTER_SPHERE, light = kind == LR_GPU_EMITTER_LIGHT;
-        constants[LR_SPEC_DELTA_LIGHTS] |= light;
-        constants[LR_SPEC_SPHERE_EMITTERS] |= sphere;
-        constants[LR_SPEC_FLAT_EMITTERS] |= !sphere && !light;
+        constants[LR_SPEC_DELTA_LIGHTS] |= kind == LR_GPU_EMITTER_LIGHT;
+        constants[LR_SPEC_SPHERE_EMITTERS] |= kind == LR_GPU_EMITTER_SPHERE;
+        constants[LR_SPEC_SUN] |= kind == LR_GPU_EMITTER_SUN;
+        constants[LR_SPEC_FLAT_EMITTERS] |= is_flat(kind);
         constants[LR_SPEC_DISK_EMITTERS] |= kind == LR_GPU_EMITTER_DISK;
         constants[LR_SPEC_TRIANGLE_EMITTERS] |= kind == LR_GPU_EMITTER_TRIANGLE;
     }
@@ -50,7 +56,7 @@ static void set_probabilities(lr_emitters *list, uint32_t from, uint32_t end, co
 {
     lr_emitter *first = &list->items[from];
     uint32_t kind = first->record.kind & LR_GPU_EMITTER_KIND;
-    bool by_area = kind != LR_GPU_EMITTER_SPHERE && kind != LR_GPU_EMITTER_LIGHT;
+    bool by_area = is_flat(kind);
     double area = 0, chosen = 0;
     for (uint32_t i = from; i < end; i++) {
         area += list->items[i].area;
@@ -83,6 +89,20 @@ static void set_all_probabilities(lr_emitters *list, const uint32_t *steps,
     }
 }
 
+/* Tells the background how likely it is chosen. */
+static void set_background(const lr_emitters *list, const uint32_t *steps, lr_packed_scene *packed)
+{
+    double picture = 0, sun = 0;
+    for (uint32_t i = 0; i < list->count; i++) {
+        uint32_t kind = list->items[i].record.kind & LR_GPU_EMITTER_KIND;
+        double chosen = steps[i] / LR_CHOICE_STEPS;
+        picture += kind == LR_GPU_EMITTER_ENVIRONMENT ? chosen : 0;
+        sun += kind == LR_GPU_EMITTER_SUN ? chosen : 0;
+    }
+    if (packed->constants[LR_SPEC_ENVIRONMENT])
+        lr_pack_environment_choice(packed, picture, sun);
+}
+
 static bool pack_choices(const lr_emitters *list, const uint32_t *steps, lr_packed_scene *packed)
 {
     uint32_t bits, first = packed->row_count;
@@ -111,6 +131,7 @@ static bool pack_list(lr_emitters *list, lr_packed_scene *packed)
     bool fits = steps && of_objects;
     if (fits) {
         set_all_probabilities(list, steps, of_objects);
+        set_background(list, steps, packed);
         fits = pack_choices(list, steps, packed);
     }
     packed->frame.object_emitters = packed->row_count;
@@ -124,7 +145,7 @@ lr_status lr_pack_emitters(const lr_scene *scene, const lr_primitive *primitives
                            lr_packed_scene *packed, lr_error *error)
 {
     lr_emitters list;
-    bool fits = lr_emitters_find(scene, primitives, &list);
+    bool fits = lr_emitters_find(scene, primitives, packed, &list);
     if (fits)
         note_use(&list, packed->constants);
     if (fits && list.count > 0)

@@ -82,6 +82,12 @@ void lr_pack_reach(float *reach, const lr_bvh_box *box);
 lr_status lr_pack_meshes(const lr_scene *scene, const uint32_t *flags, uint32_t *instances,
                          lr_packed_scene *packed, lr_error *error);
 
+/* bake_sky.c: the sky's picture, whose texels the caller frees, and the sun's radiance and solid
+ * angle. `axes` point right, up and forward, as those of gpu_environment. False when memory is out.
+ */
+bool lr_bake_sky(const lr_scene *scene, const lr_vec3 axes[3], lr_texture *picture, lr_color *sun,
+                 double *solid_angle);
+
 /* pack_emitters.c: for paths, what shines, how it is chosen, and how likely that is for each
  * object. */
 lr_status lr_pack_emitters(const lr_scene *scene, const lr_primitive *primitives,

@@ -10,10 +10,15 @@ static lr_status no_memory(lr_error *error)
     return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's textures");
 }
 
+static uint32_t count_textures(const lr_scene *scene)
+{
+    return scene->texture_count + (scene->background.kind == LR_BACKGROUND_SKY);
+}
+
 lr_status lr_pack_texture_records(const lr_scene *scene, lr_packed_scene *packed, lr_error *error)
 {
     static const struct gpu_texture empty;
-    for (uint32_t i = 0; i < scene->texture_count; i++)
+    for (uint32_t i = 0; i < count_textures(scene); i++)
         if (lr_pack_rows(packed, &empty, 1) == UINT32_MAX)
             return no_memory(error);
     return LR_OK;
@@ -65,13 +70,14 @@ lr_status lr_pack_textures(const lr_scene *scene, lr_packed_scene *packed, lr_er
         [LR_WRAP_CLAMP] = LR_GPU_WRAP_CLAMP,
         [LR_WRAP_MIRROR] = LR_GPU_WRAP_MIRROR,
     };
-    if (scene->texture_count == 0)
+    if (count_textures(scene) == 0)
         return LR_OK;
     uint32_t curve = packed->row_count;
     if (!pack_curve(packed))
         return no_memory(error);
-    for (uint32_t i = 0; i < scene->texture_count; i++) {
-        const lr_texture *texture = &scene->textures[i];
+    for (uint32_t i = 0; i < count_textures(scene); i++) {
+        bool own = i < scene->texture_count;
+        const lr_texture *texture = own ? &scene->textures[i] : &packed->sky;
         struct gpu_texture record = {
             .texels = packed->row_count,
             .size = texture->width | texture->height << 16,

@@ -28,7 +28,7 @@ double lr_camera_focus_distance(const lr_camera *camera)
 
 bool lr_camera_is_pinhole(const lr_camera *camera)
 {
-    return camera->projection == LR_PERSPECTIVE && camera->aperture == 0;
+    return camera->projection == LR_PERSPECTIVE && camera->aperture == 0 && !camera->moves;
 }
 
 static bool same_vector(lr_vec3 a, lr_vec3 b)
@@ -36,13 +36,42 @@ static bool same_vector(lr_vec3 a, lr_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-bool lr_camera_same(const lr_camera *a, const lr_camera *b)
+static bool same_pose(const lr_camera *a, const lr_camera *b)
 {
     return same_vector(a->from, b->from) && same_vector(a->to, b->to) &&
-           same_vector(a->up, b->up) && a->fov == b->fov &&
+           same_vector(a->up, b->up) && a->fov == b->fov && a->height == b->height;
+}
+
+bool lr_camera_same(const lr_camera *a, const lr_camera *b)
+{
+    lr_camera a_closing = lr_camera_closing(a), b_closing = lr_camera_closing(b);
+    return same_pose(a, b) && same_pose(&a_closing, &b_closing) &&
            a->fov_to_centers == b->fov_to_centers && a->projection == b->projection &&
-           a->height == b->height && a->aperture == b->aperture && a->focus == b->focus &&
-           a->blades == b->blades && a->blade_rotation == b->blade_rotation;
+           a->aperture == b->aperture && a->focus == b->focus && a->blades == b->blades &&
+           a->blade_rotation == b->blade_rotation;
+}
+
+void lr_camera_move(lr_camera *camera, const lr_camera *closing)
+{
+    camera->moves = !same_pose(camera, closing);
+    camera->closing.from = closing->from;
+    camera->closing.to = closing->to;
+    camera->closing.up = closing->up;
+    camera->closing.fov = closing->fov;
+    camera->closing.height = closing->height;
+}
+
+lr_camera lr_camera_closing(const lr_camera *camera)
+{
+    lr_camera closing = *camera;
+    if (camera->moves) {
+        closing.from = camera->closing.from;
+        closing.to = camera->closing.to;
+        closing.up = camera->closing.up;
+        closing.fov = camera->closing.fov;
+        closing.height = camera->closing.height;
+    }
+    return closing;
 }
 
 const char *lr_camera_flaw(const lr_camera *camera, const char **key)

@@ -11,6 +11,12 @@ double lr_camera_pixel_size(const lr_camera *camera, double rows);
 /* The distance along the view at which a lens is sharp. */
 double lr_camera_focus_distance(const lr_camera *camera);
 
+/* Lets the camera move, while its shutter is open, to where another one is. */
+void lr_camera_move(lr_camera *camera, const lr_camera *closing);
+
+/* The camera when its shutter closes. */
+lr_camera lr_camera_closing(const lr_camera *camera);
+
 /* Whether its rays are those of a pinhole. */
 bool lr_camera_is_pinhole(const lr_camera *camera);
 

@@ -103,6 +103,27 @@ static bool is_right(const edit *e, const lr_field *field)
     return true;
 }
 
+static bool holds_mapping(const lr_node *node)
+{
+    bool found = node->kind == LR_NODE_MAP;
+    for (uint32_t i = 0; node->kind == LR_NODE_LIST && i < node->count; i++)
+        found = found || holds_mapping(node->items[i]);
+    return found;
+}
+
+/* The first key that would have to change and has keys of frames, which one pose cannot replace;
+ * NULL: none. */
+static const char *moving_key(const edit *e)
+{
+    for (uint32_t i = 0; i < e->map->count; i++) {
+        const lr_node *key = lr_map_key(e->map, i);
+        const lr_field *field = lr_field_find(&lr_camera_record, key->text, key->count);
+        if (field && !is_right(e, field) && holds_mapping(lr_map_value(e->map, i)))
+            return field->name;
+    }
+    return NULL;
+}
+
 static void put_numbers(edit *e, const lr_field *field)
 {
     bool list = field->type == LR_FIELD_VECTOR;
@@ -416,9 +437,18 @@ lr_status lr_camera_edit(const char *text, size_t length, const char *name, uint
                           .after = &after,
                           .line_end = line_end_of(text, length)}};
         j.edit.map = find_map(before.tree.root, index, &j.key);
-        *edited = lr_written(put_text, &j, edited_length);
-        status = *edited ? check(&before, *edited, *edited_length, name, index, &after, error)
-                         : LR_ERROR_MEMORY;
+        const char *moving = moving_key(&j.edit);
+        if (moving)
+            status = lr_fail(error, LR_ERROR_ARGUMENT,
+                             SHOWN ":%u: the camera's %s has keys, which one pose cannot replace: "
+                                   "change them by hand",
+                             name, before.scene->cameras[index].line, moving);
+        else
+            *edited = lr_written(put_text, &j, edited_length);
+        if (*edited)
+            status = check(&before, *edited, *edited_length, name, index, &after, error);
+        else if (!moving)
+            status = LR_ERROR_MEMORY;
     }
     close_document(&before);
     if (status == LR_ERROR_MEMORY)

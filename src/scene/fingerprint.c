@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "scene/camera.h"
 
 typedef struct hasher {
     SHA2_CTX context;
@@ -66,6 +67,19 @@ static void put_floats(hasher *h, const float *values, size_t count)
     }
 }
 
+static void put_background(hasher *h, const lr_background *b)
+{
+    put_count(h, b->kind);
+    put_vector(h, b->colors[0]);
+    put_vector(h, b->colors[1]);
+    put_count(h, b->texture);
+    put_number(h, b->intensity);
+    put_number(h, b->rotate);
+    put_vector(h, b->sun);
+    put_number(h, b->turbidity);
+    put_vector(h, b->ground);
+}
+
 static void put_surroundings(hasher *h, const lr_scene *scene)
 {
     put_count(h, scene->image.width);
@@ -80,8 +94,7 @@ static void put_surroundings(hasher *h, const lr_scene *scene)
     put_count(h, scene->image.tone);
     put_number(h, scene->image.white);
     put_vector(h, scene->ambient);
-    put_vector(h, scene->background[0]);
-    put_vector(h, scene->background[1]);
+    put_background(h, &scene->background);
     put_vector(h, scene->background_up);
     put_number(h, scene->fog_density);
     put_vector(h, scene->fog_density > 0 ? scene->fog_color : (lr_color){0, 0, 0});
@@ -100,6 +113,12 @@ static void put_camera(hasher *h, const lr_camera *camera)
     put_number(h, camera->focus);
     put_count(h, camera->blades);
     put_number(h, camera->blade_rotation);
+    lr_camera closing = lr_camera_closing(camera);
+    put_vector(h, closing.from);
+    put_vector(h, closing.to);
+    put_vector(h, closing.up);
+    put_number(h, closing.fov);
+    put_number(h, closing.height);
 }
 
 static void put_light(hasher *h, const lr_light *light)

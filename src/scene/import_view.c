@@ -64,7 +64,7 @@ lr_status lr_import_surroundings(lr_import *import)
     const lr_field *sky = lr_field_find(&lr_scene_record, "background", 10);
     scene->ambient = (lr_color){AMBIENT * unexposed, AMBIENT * unexposed, AMBIENT * unexposed};
     for (int i = 0; i < 2; i++)
-        scene->background[i] = lr_vec3_scale(
+        scene->background.colors[i] = lr_vec3_scale(
             (lr_color){sky->fallback[3 * i], sky->fallback[3 * i + 1], sky->fallback[3 * i + 2]},
             fmin(unexposed, LR_COLOR_MAX));
     if (scene->camera_count > 0)

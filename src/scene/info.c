@@ -15,6 +15,7 @@ void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info)
         .meshes = scene->mesh_count,
         .notes = (const char *const *)scene->notes,
         .note_count = scene->note_count,
+        .moves = scene->moves,
     };
     for (uint32_t i = 0; i < scene->mesh_count; i++)
         info->triangles += scene->meshes[i].triangle_count;

@@ -51,6 +51,8 @@ static const lr_field camera_fields[] = {
     {"blade_rotation", LR_FIELD_NUMBER, 0, RANGE(-1e6, 1e6), DEFAULT(0),
      MEMBER(lr_camera, blade_rotation),
      .doc = "Degrees, clockwise in the picture; at 0 a corner points up."},
+    {"shutter", LR_FIELD_NUMBER, 0, RANGE(0, 1), DEFAULT(0), MEMBER(lr_camera, shutter),
+     .doc = "Fraction of a frame that the shutter is open: how far a moving camera blurs."},
 };
 const lr_record lr_camera_record =
     RECORD("camera", "Where the picture is taken from.", camera_fields, 0);
@@ -96,12 +98,40 @@ static const lr_field fog_fields[] = {
 };
 const lr_record lr_fog_record = RECORD("fog", "Fog outside of all objects.", fog_fields, 0);
 
-static const lr_field background_fields[] = {
-    {"gradient", LR_FIELD_COLORS, LR_REQUIRED, COLOR, MEMBER(lr_scene, background),
+#define BACKGROUND(member) MEMBER(lr_background_draft, background.member)
+#define BACKGROUND_INTENSITY                                                                       \
+    {                                                                                              \
+        "intensity", LR_FIELD_NUMBER, 0, RANGE(0, LR_COLOR_MAX), DEFAULT(1),                       \
+            BACKGROUND(intensity), .doc = "Multiplies its light."                                  \
+    }
+
+static const lr_field gradient_background_fields[] = {
+    {"gradient", LR_FIELD_COLORS, LR_REQUIRED, COLOR, BACKGROUND(colors),
      .doc = "Two colours: looking straight down and straight up."},
 };
-const lr_record lr_background_record =
-    RECORD("background", "What rays see that hit nothing.", background_fields, 0);
+static const lr_field image_background_fields[] = {
+    {"image", LR_FIELD_TEXT, LR_REQUIRED, MEMBER(lr_background_draft, image),
+     .doc = "The file of a picture of all directions, as seen from the scene's folder."},
+    BACKGROUND_INTENSITY,
+    {"rotate", LR_FIELD_NUMBER, 0, RANGE(-1e6, 1e6), DEFAULT(0), BACKGROUND(rotate),
+     .doc = "Degrees about `up`, counter-clockwise as seen from above."},
+};
+static const lr_field sky_fields[] = {
+    {"sky", LR_FIELD_VECTOR, LR_REQUIRED | LR_NONZERO, COORDINATE, BACKGROUND(sun),
+     .doc = "The direction towards the sun, above the horizon."},
+    {"turbidity", LR_FIELD_NUMBER, 0, RANGE(1.7, 10), DEFAULT(3), BACKGROUND(turbidity),
+     .doc = "Haze: 2 is very clear, 3 clear, 6 and more hazy."},
+    {"ground", LR_FIELD_COLOR, 0, RANGE(0, 1), DEFAULT(0.2, 0.2, 0.2), BACKGROUND(ground),
+     .doc = "Share of light that the ground below the horizon reflects."},
+    BACKGROUND_INTENSITY,
+};
+const lr_record lr_background_records[] = {
+    RECORD("gradient", "A blend from below to above.", gradient_background_fields,
+           LR_BACKGROUND_GRADIENT),
+    RECORD("image", "A picture all around.", image_background_fields, LR_BACKGROUND_IMAGE),
+    RECORD("sky", "The sky by day.", sky_fields, LR_BACKGROUND_SKY),
+};
+const uint32_t lr_background_record_count = COUNT(lr_background_records);
 
 /* ---- Patterns and materials ---------------------------------------------------------------- */
 
@@ -440,12 +470,12 @@ static const lr_field scene_fields[] = {
     {"ambient", LR_FIELD_COLOR, 0, COLOR, DEFAULT(0.1, 0.1, 0.1),
      MEMBER(lr_scene_draft, scene.ambient), .doc = "Light that is everywhere."},
     {"background", LR_FIELD_BACKGROUND, 0, COLOR, DEFAULT(1, 1, 1, 0.4, 0.6, 1),
-     .record = &lr_background_record,
-     .doc = "What rays see that hit nothing: a colour, or a gradient from below to above."},
+     .doc = "What rays see that hit nothing: a colour, a gradient from below to above, a picture "
+            "or the sky."},
     {"fog", LR_FIELD_RECORD, LR_DERIVED, .record = &lr_fog_record, .derived = "no fog",
      .doc = "Fog outside of all objects."},
     {"up", LR_FIELD_VECTOR, LR_NONZERO, COORDINATE, DEFAULT(0, 1, 0), MEMBER(lr_scene_draft, up),
-     .doc = "Up for the background's gradient and for cameras that do not say."},
+     .doc = "Up for the background and for cameras that do not say."},
     {"materials", LR_FIELD_MATERIALS, 0, .doc = "Materials by name."},
     {"lights", LR_FIELD_LIGHTS, LR_DERIVED, .derived = "one light that suits the camera",
      .doc = "The lights; an empty list is a scene without any."},

@@ -22,7 +22,7 @@ typedef enum lr_field_type {
     /* The rest is structure, which the record's own reader takes from its node. */
     LR_FIELD_RECORD,     /* a mapping as `record` says */
     LR_FIELD_PAINT,      /* a colour or a pattern */
-    LR_FIELD_BACKGROUND, /* a colour or {gradient: [below, above]} */
+    LR_FIELD_BACKGROUND, /* a colour or a record of backgrounds */
     LR_FIELD_MATERIAL,   /* a name or a mapping */
     LR_FIELD_MATERIALS,  /* name: material, ... */
     LR_FIELD_CAMERAS,    /* name: camera, ... */
@@ -62,10 +62,10 @@ struct lr_record {
     const char *doc;
     const lr_field *fields;
     uint32_t count; /* <= LR_FIELDS_MAX */
-    int kind;       /* lr_object_kind, lr_light_kind or lr_pattern_kind */
+    int kind;       /* lr_object_kind, lr_light_kind, lr_pattern_kind or lr_background_kind */
 };
 
-/* What the records of objects, lights and patterns are read into before they are completed. */
+/* What the records of objects, lights, patterns and backgrounds are read into before they are completed. */
 typedef struct lr_object_draft {
     lr_object object;
     lr_vec3 translate, scale;
@@ -86,6 +86,11 @@ typedef struct lr_pattern_draft {
     uint32_t wrap;     /* lr_wrap */
 } lr_pattern_draft;
 
+typedef struct lr_background_draft {
+    lr_background background;
+    const char *image; /* as written */
+} lr_background_draft;
+
 typedef struct lr_rotation_draft {
     lr_vec3 axis;
     double angle;
@@ -98,9 +103,9 @@ typedef struct lr_scene_draft {
 } lr_scene_draft;
 
 extern const lr_record lr_scene_record, lr_camera_record, lr_image_record, lr_fog_record,
-    lr_background_record, lr_material_record, lr_rotation_record, lr_group_record;
-extern const lr_record lr_pattern_records[], lr_light_records[], lr_object_records[];
-extern const uint32_t lr_pattern_record_count, lr_light_record_count, lr_object_record_count;
+    lr_material_record, lr_rotation_record, lr_group_record;
+extern const lr_record lr_background_records[], lr_pattern_records[], lr_light_records[], lr_object_records[];
+extern const uint32_t lr_background_record_count, lr_pattern_record_count, lr_light_record_count, lr_object_record_count;
 
 /* All records in the order of the documentation, NULL behind the last. */
 const lr_record *lr_record_at(uint32_t index);

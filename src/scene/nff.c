@@ -141,7 +141,7 @@ static bool read_background(nff_reader *reader, const lr_nff_word *at)
     if (!lr_nff_read_numbers(&reader->text, "background", numbers, 3, values))
         return false;
     lr_scene *scene = reader->builder.scene;
-    scene->background[0] = scene->background[1] = vec3_of(values);
+    scene->background.colors[0] = scene->background.colors[1] = vec3_of(values);
     return true;
 }
 

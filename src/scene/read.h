@@ -60,6 +60,16 @@ bool lr_read_number(lr_reader *reader, const lr_node *node, const lr_field *fiel
 bool lr_read_color(lr_reader *reader, const lr_node *node, const lr_field *field, const char *what,
                    lr_color *color);
 
+/* The keys of a value that changes from frame to frame, NULL of any other. */
+const lr_node *lr_keys_of(const lr_reader *reader, const lr_node *node);
+
+/* Reads what such a value is in the reader's frame: up to three numbers that `read` reads of each
+ * key, blended along straight lines; before the first key and after the last it stays. */
+typedef bool lr_component_reader(lr_reader *reader, const lr_node *node, const lr_field *field,
+                                 const char *what, double *value);
+bool lr_read_keys(lr_reader *reader, const lr_node *keys, const lr_field *field, const char *what,
+                  lr_component_reader *read, uint32_t count, double *value);
+
 /* Two colours, reported as `what`. */
 bool lr_read_colors(lr_reader *reader, const lr_node *node, const lr_field *field,
                     lr_color colors[2]);
@@ -90,6 +100,11 @@ uint32_t lr_read_material_use(lr_reader *reader, const lr_node *node);
 /* The material of objects that name none; UINT32_MAX when memory is out. */
 uint32_t lr_default_material(lr_reader *reader);
 
+/* The texture of the file that `node`, the text `file`, names. */
+bool lr_read_picture(lr_reader *reader, const lr_node *node, const char *file, lr_wrap wrap_u,
+                     lr_wrap wrap_v, uint32_t *texture);
+
+void lr_read_background(lr_reader *reader, const lr_node *node, const lr_field *field);
 void lr_read_lights(lr_reader *reader, const lr_node *node);
 void lr_read_objects(lr_reader *reader, const lr_node *node);
 

@@ -10,17 +10,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The texture that an image pattern names. */
-static bool load_image(lr_reader *reader, const lr_node *node, const lr_pattern_draft *draft,
-                       uint32_t *texture)
+bool lr_read_picture(lr_reader *reader, const lr_node *node, const char *file, lr_wrap wrap_u,
+                     lr_wrap wrap_v, uint32_t *texture)
 {
     char *path;
     lr_error error = {0};
-    lr_status status =
-        lr_path_resolve(reader->report->name, draft->image, &reader->options, &path, &error);
-    lr_wrap wrap = (lr_wrap)draft->wrap;
+    lr_status status = lr_path_resolve(reader->report->name, file, &reader->options, &path, &error);
     if (!status)
-        status = lr_texture_load(&reader->builder, path, wrap, wrap, texture, &error);
+        status = lr_texture_load(&reader->builder, path, wrap_u, wrap_v, texture, &error);
     free(path);
     if (status == LR_ERROR_MEMORY)
         reader->report->no_memory = true;
@@ -38,7 +35,7 @@ static bool read_paint(lr_reader *reader, const lr_node *node, const lr_field *f
         lr_report_type(reader, node, field->name, lr_field_expected(field, expected));
         return false;
     }
-    if (node->kind != LR_NODE_MAP)
+    if (node->kind != LR_NODE_MAP || lr_keys_of(reader, node))
         return lr_read_color(reader, node, field, field->name, &pattern->colors[0]);
     const lr_record *record = NULL;
     for (uint32_t i = 0; i < lr_pattern_record_count && !record; i++)
@@ -67,8 +64,8 @@ static bool read_paint(lr_reader *reader, const lr_node *node, const lr_field *f
     pattern->kind = (lr_pattern_kind)record->kind;
     pattern->object_space = draft.space == 1;
     if (pattern->kind == LR_PATTERN_IMAGE)
-        return load_image(reader, lr_given_value(&given, record, "image"), &draft,
-                          &pattern->texture);
+        return lr_read_picture(reader, lr_given_value(&given, record, "image"), draft.image,
+                               (lr_wrap)draft.wrap, (lr_wrap)draft.wrap, &pattern->texture);
     if (pattern->kind == LR_PATTERN_GRADIENT) {
         pattern->direction = lr_vec3_sub(draft.to, pattern->origin);
         if (!(lr_vec3_length(pattern->direction) >= LR_LENGTH_MIN)) {

@@ -176,6 +176,9 @@ bool lr_read_number(lr_reader *reader, const lr_node *node, const lr_field *fiel
                     double *value)
 {
     char expected[LR_EXPECTED_MAX], described[LR_SHOWN_MAX + 32];
+    const lr_node *keys = field->type == LR_FIELD_INTEGER ? NULL : lr_keys_of(reader, node);
+    if (keys)
+        return lr_read_keys(reader, keys, field, what, lr_read_number, 1, value);
     lr_field scalar = *field; /* a component of a vector or colour expects a number */
     if (scalar.type != LR_FIELD_INTEGER)
         scalar.type = LR_FIELD_NUMBER;
@@ -292,11 +295,30 @@ static bool read_triple(lr_reader *reader, const lr_node *node, const lr_field *
     return good;
 }
 
+static bool read_xyz(lr_reader *reader, const lr_node *node, const lr_field *field,
+                     const char *what, double *values)
+{
+    lr_vec3 read;
+    if (!read_triple(reader, node, field, what, "xyz", &read))
+        return false;
+    memcpy(values, &read, sizeof read);
+    return true;
+}
+
+/* A triple, or its keys. */
+static bool read_moving_xyz(lr_reader *reader, const lr_node *node, const lr_field *field,
+                            lr_vec3 *vector)
+{
+    const lr_node *keys = lr_keys_of(reader, node);
+    return keys ? lr_read_keys(reader, keys, field, field->name, read_xyz, 3, &vector->x)
+                : read_xyz(reader, node, field, field->name, &vector->x);
+}
+
 static bool read_vector(lr_reader *reader, const lr_node *node, const lr_field *field,
                         lr_vec3 *vector)
 {
     lr_vec3 read;
-    if (!read_triple(reader, node, field, field->name, "xyz", &read))
+    if (!read_moving_xyz(reader, node, field, &read))
         return false;
     bool zero = read.x == 0 && read.y == 0 && read.z == 0;
     if (field->flags & LR_NONZERO && zero) {
@@ -308,22 +330,32 @@ static bool read_vector(lr_reader *reader, const lr_node *node, const lr_field *
     return true;
 }
 
+/* Three factors, or one for all. */
+static bool read_factors(lr_reader *reader, const lr_node *node, const lr_field *field,
+                         const char *what, double *factors)
+{
+    if (node->kind == LR_NODE_LIST)
+        return read_xyz(reader, node, field, what, factors);
+    if (node->kind != LR_NODE_PLAIN) {
+        char expected[LR_EXPECTED_MAX];
+        lr_report_type(reader, node, what, lr_field_expected(field, expected));
+        return false;
+    }
+    if (!lr_read_number(reader, node, field, what, factors))
+        return false;
+    factors[1] = factors[2] = factors[0];
+    return true;
+}
+
 static bool read_scale(lr_reader *reader, const lr_node *node, const lr_field *field,
                        lr_vec3 *vector)
 {
     lr_vec3 read;
-    if (node->kind == LR_NODE_LIST) {
-        if (!read_triple(reader, node, field, field->name, "xyz", &read))
-            return false;
-    } else if (node->kind == LR_NODE_PLAIN) {
-        if (!lr_read_number(reader, node, field, field->name, &read.x))
-            return false;
-        read.y = read.z = read.x;
-    } else {
-        char expected[LR_EXPECTED_MAX];
-        lr_report_type(reader, node, field->name, lr_field_expected(field, expected));
+    const lr_node *keys = lr_keys_of(reader, node);
+    bool good = keys ? lr_read_keys(reader, keys, field, field->name, read_factors, 3, &read.x)
+                     : read_factors(reader, node, field, field->name, &read.x);
+    if (!good)
         return false;
-    }
     double least = fmin(fabs(read.x), fmin(fabs(read.y), fabs(read.z)));
     if (least < LR_LENGTH_MIN) {
         lr_report_add(reader->report, node->offset,
@@ -339,7 +371,7 @@ static bool read_scale(lr_reader *reader, const lr_node *node, const lr_field *f
 static bool read_rotate(lr_reader *reader, const lr_node *node, const lr_field *field,
                         lr_transform *transform)
 {
-    if (node->kind == LR_NODE_MAP) {
+    if (node->kind == LR_NODE_MAP && !lr_keys_of(reader, node)) {
         lr_rotation_draft draft;
         lr_given given;
         if (!lr_read_record(reader, node, node, &lr_rotation_record, &draft, &given))
@@ -348,7 +380,7 @@ static bool read_rotate(lr_reader *reader, const lr_node *node, const lr_field *
         return true;
     }
     lr_vec3 angles;
-    if (!read_triple(reader, node, field, field->name, "xyz", &angles))
+    if (!read_moving_xyz(reader, node, field, &angles))
         return false;
     /* About x first, so it stands rightmost in the product. */
     lr_transform x = lr_transform_rotate((lr_vec3){1, 0, 0}, angles.x);
@@ -380,9 +412,22 @@ static bool read_matrix(lr_reader *reader, const lr_node *node, const lr_field *
 
 /* ---- Colours ------------------------------------------------------------------------------- */
 
+static bool read_rgb(lr_reader *reader, const lr_node *node, const lr_field *field,
+                     const char *what, double *values)
+{
+    lr_color color;
+    if (!lr_read_color(reader, node, field, what, &color))
+        return false;
+    memcpy(values, &color, sizeof color);
+    return true;
+}
+
 bool lr_read_color(lr_reader *reader, const lr_node *node, const lr_field *field, const char *what,
                    lr_color *color)
 {
+    const lr_node *keys = lr_keys_of(reader, node);
+    if (keys)
+        return lr_read_keys(reader, keys, field, what, read_rgb, 3, &color->x);
     char expected[LR_EXPECTED_MAX], message[LR_SHOWN_MAX * 2 + LR_EXPECTED_MAX];
     char described[LR_SHOWN_MAX + 32];
     lr_field as_color = *field;

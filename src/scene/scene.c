@@ -20,14 +20,49 @@ static lr_camera *add_camera(lr_reader *reader)
     return camera;
 }
 
-static void check_lens(lr_reader *reader, const lr_camera *camera, const lr_given *given,
-                       const lr_node *at)
+/* False after reporting what no camera may be. */
+static bool check_camera(lr_reader *reader, const lr_camera *camera, const lr_given *given,
+                         const lr_node *at)
 {
+    const lr_record *record = &lr_camera_record;
+    const lr_node *from = lr_given_value(given, record, "from");
+    const lr_node *to = lr_given_value(given, record, "to");
+    const lr_node *own_up = lr_given_value(given, record, "up");
+    const lr_node *aim = to ? to : from ? from : at;
+    lr_vec3 view = lr_vec3_sub(camera->to, camera->from);
+    if (!(lr_vec3_length(view) >= LR_LENGTH_MIN)) {
+        lr_report_add(reader->report, aim->offset,
+                      "the camera's from and to are the same point, expected two");
+        return false;
+    }
+    if (lr_parallel(view, camera->up)) {
+        bool along_z = lr_parallel(view, (lr_vec3){0, 0, 1});
+        lr_report_add(reader->report, (own_up ? own_up : aim)->offset,
+                      "the camera's up [%.10g, %.10g, %.10g] lies along its view, expected "
+                      "another direction, such as `up: [%d, 0, %d]`",
+                      camera->up.x, camera->up.y, camera->up.z, along_z ? 1 : 0, along_z ? 0 : -1);
+        return false;
+    }
     const char *key, *flaw = lr_camera_flaw(camera, &key);
     if (!flaw)
-        return;
-    const lr_node *value = lr_given_value(given, &lr_camera_record, key);
+        return true;
+    const lr_node *value = lr_given_value(given, record, key);
     lr_report_add(reader->report, (value ? value : at)->offset, "the camera's %s: %s", key, flaw);
+    return false;
+}
+
+/* Where the camera is when the shutter closes: the same text, read in a frame a little later. */
+static void read_closing(lr_reader *reader, const lr_node *node, const lr_node *at, lr_vec3 up,
+                         lr_camera *camera)
+{
+    lr_camera closing = {.up = up};
+    lr_given given;
+    reader->options.frame += camera->shutter;
+    bool good = lr_read_record(reader, node, at, &lr_camera_record, &closing, &given) &&
+                check_camera(reader, &closing, &given, at);
+    reader->options.frame -= camera->shutter;
+    if (good)
+        lr_camera_move(camera, &closing);
 }
 
 static void read_camera(lr_reader *reader, const lr_node *node, const lr_node *name, lr_vec3 up)
@@ -37,38 +72,12 @@ static void read_camera(lr_reader *reader, const lr_node *node, const lr_node *n
     if (!camera)
         return;
     *camera = (lr_camera){.line = name ? name->line : node->line, .up = up};
-    const lr_record *record = &lr_camera_record;
     const lr_node *at = name ? name : node;
-    bool valid = lr_read_record(reader, node, at, record, camera, &given);
+    bool valid = lr_read_record(reader, node, at, &lr_camera_record, camera, &given);
     if (name && !(camera->name = lr_string_copy(name->text, name->count)))
         reader->report->no_memory = true;
-    if (!valid)
-        return;
-    const lr_node *from = lr_given_value(&given, record, "from");
-    const lr_node *to = lr_given_value(&given, record, "to");
-    const lr_node *own_up = lr_given_value(&given, record, "up");
-    lr_vec3 view = lr_vec3_sub(camera->to, camera->from);
-    if (!(lr_vec3_length(view) >= LR_LENGTH_MIN))
-        lr_report_add(reader->report,
-                      (to     ? to
-                       : from ? from
-                              : at)
-                          ->offset,
-                      "the camera's from and to are the same point, expected two");
-    else if (lr_parallel(view, camera->up))
-        lr_report_add(reader->report,
-                      (own_up ? own_up
-                       : to   ? to
-                       : from ? from
-                              : at)
-                          ->offset,
-                      "the camera's up [%.10g, %.10g, %.10g] lies along its view, expected "
-                      "another direction, such as `up: [%d, 0, %d]`",
-                      camera->up.x, camera->up.y, camera->up.z,
-                      lr_parallel(view, (lr_vec3){0, 0, 1}) ? 1 : 0,
-                      lr_parallel(view, (lr_vec3){0, 0, 1}) ? 0 : -1);
-    else
-        check_lens(reader, camera, &given, at);
+    if (valid && check_camera(reader, camera, &given, at) && camera->shutter > 0)
+        read_closing(reader, node, at, up, camera);
 }
 
 static void read_cameras(lr_reader *reader, const lr_node *node, lr_vec3 up)
@@ -80,20 +89,6 @@ static void read_cameras(lr_reader *reader, const lr_node *node, lr_vec3 up)
     }
     for (uint32_t i = 0; i < node->count; i++)
         read_camera(reader, lr_map_value(node, i), lr_map_key(node, i), up);
-}
-
-static void read_background(lr_reader *reader, const lr_node *node, const lr_field *field)
-{
-    lr_color *background = reader->scene->background;
-    lr_given given;
-    if (node->kind == LR_NODE_MAP) {
-        lr_read_record(reader, node, node, &lr_background_record, reader->scene, &given);
-    } else if (node->kind == LR_NODE_EMPTY) {
-        char expected[LR_EXPECTED_MAX];
-        lr_report_type(reader, node, field->name, lr_field_expected(field, expected));
-    } else if (lr_read_color(reader, node, field, field->name, &background[0])) {
-        background[1] = background[0];
-    }
 }
 
 /* Cameras are known to be given in one way or the other, else that is reported. */
@@ -141,8 +136,8 @@ void lr_read_scene(lr_reader *reader, const lr_node *root)
     lr_record_defaults(&lr_image_record, scene);
     lr_record_defaults(&lr_fog_record, scene);
     const lr_field *sky = &record->fields[lr_field_index(record, "background")];
-    scene->background[0] = (lr_color){sky->fallback[0], sky->fallback[1], sky->fallback[2]};
-    scene->background[1] = (lr_color){sky->fallback[3], sky->fallback[4], sky->fallback[5]};
+    scene->background.colors[0] = (lr_color){sky->fallback[0], sky->fallback[1], sky->fallback[2]};
+    scene->background.colors[1] = (lr_color){sky->fallback[3], sky->fallback[4], sky->fallback[5]};
 
     const lr_node *image = lr_given_value(&given, record, "image");
     const lr_node *fog = lr_given_value(&given, record, "fog");
@@ -159,7 +154,7 @@ void lr_read_scene(lr_reader *reader, const lr_node *root)
     if (fog)
         lr_read_record(reader, fog, fog, &lr_fog_record, scene, &ignored);
     if (background)
-        read_background(reader, background, sky);
+        lr_read_background(reader, background, sky);
     if (materials)
         lr_read_materials(reader, materials);
     scene->default_light = !lights;

@@ -28,6 +28,10 @@ typedef struct lr_texture {
     uint8_t *bytes; /* 4 a texel, top row first: sRGB red, green, blue, and alpha; or NULL, and */
     float *floats;  /* 3 a texel, top row first: linear red, green, blue >= 0 */
     bool borrowed;  /* texels of a part of the scene */
+    /* Of floats: the first texel that held no colour and was changed, and one of its samples; its
+     * number + 1, 0: none. */
+    uint32_t changed;
+    float changed_from;
 } lr_texture;
 
 /* Triangles with what belongs to their corners, stored once for all the objects that show them. All
@@ -155,6 +159,24 @@ typedef struct lr_light {
 
 typedef enum lr_projection { LR_PERSPECTIVE, LR_ORTHOGRAPHIC, LR_PANORAMA } lr_projection;
 
+typedef enum lr_background_kind {
+    LR_BACKGROUND_GRADIENT, /* or one colour */
+    LR_BACKGROUND_IMAGE,
+    LR_BACKGROUND_SKY,
+} lr_background_kind;
+
+/* What is seen infinitely far away. */
+typedef struct lr_background {
+    lr_background_kind kind;
+    lr_color colors[2]; /* gradient: looking along -up, looking along up; equal for one colour */
+    uint32_t texture;   /* image: all directions, up at the top, -z in the middle if up is y */
+    double intensity;   /* image, sky: a factor; 0..LR_COLOR_MAX */
+    double rotate;      /* image: degrees about up, counter-clockwise as seen from above */
+    lr_vec3 sun;        /* sky: where it stands, above the horizon; not of unit length */
+    double turbidity;   /* sky: 1.7..10 */
+    lr_color ground;    /* sky: the share of light that the ground reflects; 0..1 */
+} lr_background;
+
 typedef struct lr_camera {
     char *name; /* NULL for the only one */
     uint32_t line;
@@ -167,6 +189,12 @@ typedef struct lr_camera {
     double focus;    /* distance along the view that is sharp; 0: that of `to` */
     uint32_t blades; /* corners of the aperture, 3..32; 0: round */
     double blade_rotation; /* of the corner that else points up, clockwise in the picture */
+    double shutter;        /* fraction of a frame that it is open */
+    bool moves;            /* meanwhile; `closing` is where to */
+    struct {
+        lr_vec3 from, to, up;
+        double fov, height;
+    } closing;
 } lr_camera;
 
 struct lr_part; /* part.h */
@@ -190,10 +218,11 @@ struct lr_scene {
     uint32_t note_count;
     lr_light *lights; /* empty only when the scene says `lights: []` */
     uint32_t light_count;
+    bool moves;         /* some value changes from frame to frame */
     bool default_light; /* no `lights` key: the renderer adds one that suits the camera */
     lr_color ambient;
-    lr_color background[2]; /* looking along -up, looking along up; equal for a plain colour */
-    lr_vec3 background_up;  /* unit */
+    lr_background background;
+    lr_vec3 background_up; /* unit */
     lr_color fog_color;
     double fog_density; /* per metre; 0: no fog */
     struct {

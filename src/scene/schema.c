@@ -87,6 +87,12 @@ static json_t *named(schema *s, const char *definition, int minimum)
     return minimum ? put(s, node, "minProperties", json_integer(minimum)) : node;
 }
 
+/* A value, or one that changes from frame to frame. */
+static json_t *moving(schema *s, json_t *node)
+{
+    return any_of(s, node, reference(s, "keys"));
+}
+
 static json_t *field_schema(schema *s, const lr_field *field)
 {
     const double *d = field->fallback;
@@ -95,7 +101,8 @@ static json_t *field_schema(schema *s, const lr_field *field)
     switch (field->type) {
     case LR_FIELD_NUMBER:
     case LR_FIELD_INTEGER:
-        node = ranged(s, field->type == LR_FIELD_INTEGER ? "integer" : "number", field);
+        node = field->type == LR_FIELD_INTEGER ? ranged(s, "integer", field)
+                                               : moving(s, ranged(s, "number", field));
         fallback = number(d[0]);
         break;
     case LR_FIELD_BOOLEAN:
@@ -111,22 +118,22 @@ static json_t *field_schema(schema *s, const lr_field *field)
         break;
     }
     case LR_FIELD_VECTOR:
-        node = reference(s, "vector");
+        node = moving(s, reference(s, "vector"));
         fallback = numbers(s, d, 3);
         break;
     case LR_FIELD_COLOR:
-        node = color(s, field);
+        node = moving(s, color(s, field));
         fallback = grey ? number(d[0]) : numbers(s, d, 3);
         break;
     case LR_FIELD_COLORS:
         node = list_of(s, color(s, field), 2);
         break;
     case LR_FIELD_SCALE:
-        node = any_of(s, ranged(s, "number", field), reference(s, "vector"));
+        node = moving(s, any_of(s, ranged(s, "number", field), reference(s, "vector")));
         fallback = number(d[0]);
         break;
     case LR_FIELD_ROTATE:
-        node = any_of(s, reference(s, "vector"), reference(s, "rotate"));
+        node = moving(s, any_of(s, reference(s, "vector"), reference(s, "rotate")));
         fallback = numbers(s, d, 3);
         break;
     case LR_FIELD_MATRIX:
@@ -136,11 +143,11 @@ static json_t *field_schema(schema *s, const lr_field *field)
         node = record_schema(s, field->record);
         break;
     case LR_FIELD_PAINT:
-        node = any_of(s, reference(s, "color"), reference(s, "pattern"));
+        node = moving(s, any_of(s, reference(s, "color"), reference(s, "pattern")));
         fallback = numbers(s, d, 3);
         break;
     case LR_FIELD_BACKGROUND:
-        node = any_of(s, reference(s, "color"), record_schema(s, field->record));
+        node = moving(s, any_of(s, reference(s, "color"), reference(s, "background")));
         fallback = put(s, json_object(), "gradient",
                        append(s, append(s, json_array(), numbers(s, d, 3)), numbers(s, d + 3, 3)));
         break;
@@ -229,19 +236,38 @@ static json_t *color_schema(schema *s, double maximum)
                            "\"#rgb\" or a CSS colour name."));
 }
 
+/* {keys: {0: ..., 24: ...}} */
+static json_t *keys_schema(schema *s)
+{
+    json_t *frames = put(s, typed(s, "object"), "propertyNames",
+                         put(s, json_object(), "pattern", json_string("^[-+]?[0-9.]+$")));
+    put(s, frames, "minProperties", json_integer(1));
+    put(s, frames, "description", json_string("Frames and the values there, blended in between."));
+    json_t *node = put(s, typed(s, "object"), "properties", put(s, json_object(), "keys", frames));
+    put(s, node, "required", append(s, json_array(), json_string("keys")));
+    return put(s, node, "additionalProperties", json_false());
+}
+
+static json_t *one_of(schema *s, const lr_record *records, uint32_t count)
+{
+    json_t *options = json_array();
+    for (uint32_t i = 0; i < count; i++)
+        append(s, options, record_schema(s, &records[i]));
+    return put(s, json_object(), "oneOf", options);
+}
+
 static json_t *definitions(schema *s)
 {
     json_t *defs = json_object();
+    put(s, defs, "keys", keys_schema(s));
     lr_field coordinate = {.minimum = -LR_COORDINATE_MAX, .maximum = LR_COORDINATE_MAX};
     put(s, defs, "vector", list_of(s, ranged(s, "number", &coordinate), 3));
     put(s, defs, "color", color_schema(s, LR_COLOR_MAX));
     put(s, defs, "share", color_schema(s, 1));
     put(s, defs, "rotate", record_schema(s, &lr_rotation_record));
     put(s, defs, "camera", record_schema(s, &lr_camera_record));
-    json_t *patterns = json_array();
-    for (uint32_t i = 0; i < lr_pattern_record_count; i++)
-        append(s, patterns, record_schema(s, &lr_pattern_records[i]));
-    put(s, defs, "pattern", put(s, json_object(), "oneOf", patterns));
+    put(s, defs, "background", one_of(s, lr_background_records, lr_background_record_count));
+    put(s, defs, "pattern", one_of(s, lr_pattern_records, lr_pattern_record_count));
     put(s, defs, "material", record_schema(s, &lr_material_record));
     put(s, defs, "light", item_schema(s, lr_light_records, lr_light_record_count, NULL));
     return put(s, defs, "object",

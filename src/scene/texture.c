@@ -56,8 +56,9 @@ static void fill_bytes(const lr_image *image, uint8_t *out)
 }
 
 /* Returns how many samples are no colours and were replaced. */
-static size_t fill_floats(const lr_image *image, float *out)
+static size_t fill_floats(const lr_image *image, lr_texture *texture)
 {
+    float *out = texture->floats;
     size_t texels = (size_t)image->width * image->height, replaced = 0;
     uint32_t colors = image->channels < 3 ? 1 : 3;
     const float *in = image->samples;
@@ -68,6 +69,10 @@ static size_t fill_floats(const lr_image *image, float *out)
             float nearest = sample > 0 ? (float)LR_COLOR_MAX : 0;
             *out++ = valid ? sample + 0.0f /* -0 as 0 */ : nearest;
             replaced += !valid && channel < colors;
+            if (!valid && !texture->changed) {
+                texture->changed = (uint32_t)i + 1;
+                texture->changed_from = sample;
+            }
         }
     }
     return replaced;
@@ -92,7 +97,7 @@ static lr_status fill(lr_scene_builder *builder, const lr_image *image, const ch
     if (texture->bytes) {
         fill_bytes(image, texture->bytes);
     } else {
-        size_t replaced = fill_floats(image, texture->floats);
+        size_t replaced = fill_floats(image, texture);
         if (replaced && !lr_scene_add_note(builder,
                                            "%.300s: %zu of its values are negative, above %g or "
                                            "not a number, and were brought into range",

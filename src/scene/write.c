@@ -263,6 +263,8 @@ static void put_scene(FILE *out, void *to)
     lr_writer *writer = to;
     writer->out = out;
     choose_names(writer);
+    if (writer->scene->moves)
+        lr_writer_cannot(writer, "what moves is written as it is in this frame");
     writers[writer->format](writer);
 }
 

@@ -43,6 +43,8 @@ static void put_camera(lr_writer *writer)
                          "the camera's projection is left out, it is written as perspective");
     if (camera->aperture > 0)
         lr_writer_cannot(writer, "the camera's lens is left out, everything is in focus");
+    if (camera->moves)
+        lr_writer_cannot(writer, "the blur of the moving camera is left out");
     for (uint32_t i = 1; i < scene->camera_count; i++)
         lr_writer_cannot(writer, "cameras beside the first are left out");
 }
@@ -69,9 +71,11 @@ static void put_background(lr_writer *writer)
 {
     const lr_scene *scene = writer->scene;
     FILE *out = writer->out;
-    if (lr_colors_equal(scene->background[0], scene->background[1])) {
+    if (scene->background.kind != LR_BACKGROUND_GRADIENT)
+        lr_writer_cannot(writer, "pictures and the sky as background are left out");
+    if (lr_colors_equal(scene->background.colors[0], scene->background.colors[1])) {
         fputs("background { ", out);
-        put_rgb(out, scene->background[0]);
+        put_rgb(out, scene->background.colors[0]);
         fputs(" }\n", out);
         return;
     }
@@ -79,9 +83,9 @@ static void put_background(lr_writer *writer)
     fputs("sky_sphere { pigment { function { min(0.999999, max(0, 0.5+0.5*", out);
     put_dot(out, scene->background_up, (lr_vec3){0, 0, 0});
     fputs(")) }\n  color_map { [0 ", out);
-    put_rgb(out, scene->background[0]);
+    put_rgb(out, scene->background.colors[0]);
     fputs("] [1 ", out);
-    put_rgb(out, scene->background[1]);
+    put_rgb(out, scene->background.colors[1]);
     fputs("] } } }\n", out);
 }
 

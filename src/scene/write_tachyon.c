@@ -50,6 +50,8 @@ static void put_camera(lr_writer *writer)
                          "the camera's projection is left out, it is written as perspective");
     if (camera->aperture > 0)
         lr_writer_cannot(writer, "the camera's lens is left out, everything is in focus");
+    if (camera->moves)
+        lr_writer_cannot(writer, "the blur of the moving camera is left out");
     for (uint32_t i = 1; i < scene->camera_count; i++)
         lr_writer_cannot(writer, "cameras beside the first are left out");
 }
@@ -58,14 +60,16 @@ static void put_surroundings(lr_writer *writer)
 {
     const lr_scene *scene = writer->scene;
     FILE *out = writer->out;
-    if (lr_colors_equal(scene->background[0], scene->background[1])) {
-        put_color(out, "BACKGROUND", scene->background[0]);
+    if (scene->background.kind != LR_BACKGROUND_GRADIENT)
+        lr_writer_cannot(writer, "pictures and the sky as background are left out");
+    if (lr_colors_equal(scene->background.colors[0], scene->background.colors[1])) {
+        put_color(out, "BACKGROUND", scene->background.colors[0]);
     } else {
         fputs("BACKGROUND_GRADIENT SKY_SPHERE", out);
         put_vector(out, "UPDIR", scene->background_up);
         fputs(" TOPVAL 1 BOTTOMVAL -1", out);
-        put_color(out, "TOPCOLOR", scene->background[1]);
-        put_color(out, "BOTTOMCOLOR", scene->background[0]);
+        put_color(out, "TOPCOLOR", scene->background.colors[1]);
+        put_color(out, "BOTTOMCOLOR", scene->background.colors[0]);
     }
     fputc('\n', out);
     if (scene->fog_density > 0) {

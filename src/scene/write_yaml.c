@@ -195,6 +195,35 @@ static void put_cameras(lr_writer *writer)
         put_camera_entry(writer->out, &scene->cameras[i]);
 }
 
+static void put_file_name(lr_writer *writer, uint32_t number, const char *ending)
+{
+    char path[4096];
+    const char *name = lr_side_path(writer->path, number, ending, path, sizeof path);
+    const char *slash = name ? strrchr(name, '/') : NULL;
+    put_text(writer->out, slash ? slash + 1 : name ? name : "");
+}
+
+static void put_background(lr_writer *writer)
+{
+    const lr_background *background = &writer->scene->background;
+    lr_background_draft draft = {.background = *background};
+    mapping map = {.out = writer->out};
+    if (background->kind == LR_BACKGROUND_GRADIENT &&
+        lr_colors_equal(background->colors[0], background->colors[1])) {
+        put_color(writer->out, background->colors[0]);
+        return;
+    }
+    if (background->kind == LR_BACKGROUND_IMAGE) {
+        put_key(&map, "image");
+        put_file_name(writer, background->texture,
+                      lr_texture_ending(&writer->scene->textures[background->texture]));
+    }
+    put_record(&map,
+               record_of(lr_background_records, lr_background_record_count, (int)background->kind),
+               &draft, NULL);
+    end_mapping(&map);
+}
+
 static void put_surroundings(lr_writer *writer)
 {
     const lr_scene *scene = writer->scene;
@@ -206,13 +235,7 @@ static void put_surroundings(lr_writer *writer)
     fputs("\nambient: ", out);
     put_color(out, scene->ambient);
     fputs("\nbackground: ", out);
-    if (lr_colors_equal(scene->background[0], scene->background[1])) {
-        put_color(out, scene->background[0]);
-    } else {
-        fputs("{gradient: ", out);
-        put_colors(out, scene->background);
-        fputc('}', out);
-    }
+    put_background(writer);
     fputs("\nup: ", out);
     put_vector(out, &scene->background_up.x, 3);
     fputc('\n', out);
@@ -222,14 +245,6 @@ static void put_surroundings(lr_writer *writer)
         end_mapping(&fog);
         fputc('\n', out);
     }
-}
-
-static void put_file_name(lr_writer *writer, uint32_t number, const char *ending)
-{
-    char path[4096];
-    const char *name = lr_side_path(writer->path, number, ending, path, sizeof path);
-    const char *slash = name ? strrchr(name, '/') : NULL;
-    put_text(writer->out, slash ? slash + 1 : name ? name : "");
 }
 
 /* False when the texture is in no file of its own. */

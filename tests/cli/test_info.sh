@@ -69,7 +69,7 @@ def material(color, diffuse, specular, transmit, shininess, ior, one_sided):
     real(ior)
     whole(0, 0)
     real(0)
-    whole(one_sided)
+    whole(one_sided, 0)
 
 
 def instance(kind, material, inward):
@@ -79,13 +79,16 @@ def instance(kind, material, inward):
 
 whole(32, 16, 1, 4, 0)
 real(0, 0)
-whole(0, 0)
+whole(0, 0, 0)
 real(0, 0, 0, 0, 0.5, 0.25, 0.125, 0.5, 0.25, 0.125, 0, 0, 1, 0, 0, 0, 0)
 whole(1)
 real(0, -5, 2, 0, 0, 0, 0, 0, 1, 45)
-whole(1)
+whole(1, 0)
+real(0, 0, 0)
+whole(0)
+real(0)
 whole(0, 1, 0)
-real(1, 1, 1, 1, 0, 4, 3, 2, 0, 0, 0, 0, 0)
+real(1, 1, 1, 1, 0, 4, 3, 2, 0, 0, 0, 0, 0, 0)
 whole(1)
 whole(2)
 material((1, 0.5, 0), 0.75, 0.25, 0, 8, 1, 0)

@@ -80,7 +80,7 @@ static inline void check_scene(const lr_scene *scene)
                lr_vec3_length(lr_vec3_cross(lr_vec3_normalize(view), c->up)) > 0);
     }
     expect(isfinite(scene->image.exposure) && within(scene->ambient, 1e30) &&
-           within(scene->background[0], LR_COLOR_MAX));
+           within(scene->background.colors[0], LR_COLOR_MAX));
 }
 
 #endif

@@ -3,7 +3,8 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 // Samples light sources: three rows of rays_in hold a position and a choice; two random numbers, how
-// far it is to what is met there and the object; its normal. Then asks how likely that was.
+// far it is to what is met there and the object; its normal. Then asks how likely that was. And what is
+// seen of the background in the direction of that normal, and how likely that is.
 #include "gpu_layout.h"
 #include "emitter.glsl"
 
@@ -24,7 +25,7 @@ void main()
     uvec4 b = rays_in[3u * i + 1u];
     vec3 normal = uintBitsToFloat(rays_in[3u * i + 2u]).xyz;
     light_sample s = sample_light_at(a.xyz, a.w, uintBitsToFloat(b.xy));
-    at = 9u * i;
+    at = 13u * i;
     put(s.wi.x);
     put(s.wi.y);
     put(s.wi.z);
@@ -34,4 +35,9 @@ void main()
     put(s.value.z);
     put(s.pdf);
     put(emitter_pdf(b.w, a.xyz, s.wi, uintBitsToFloat(b.z), normal));
+    vec3 seen = environment(normal);
+    put(seen.x);
+    put(seen.y);
+    put(seen.z);
+    put(environment_pdf(normal));
 }

@@ -37,6 +37,8 @@ void main()
         result.xyz = ex_mix(a.xyz, b.xyz, b.w);
     else if (which == 10u)
         result.xy = ex_cos_sin_turns(a.x);
+    else if (which == 11u)
+        result.x = ex_angle_turns(a.y, a.x);
     else
         result.x = ex_is_finite(a.xxx) ? 1.0 : 0.0;
     found[i] = result;

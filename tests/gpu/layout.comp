@@ -25,6 +25,8 @@ layout(std430, set = 0, binding = LR_BIND_COUNT) readonly buffer RecordBlock
     gpu_texture some_texture[2];
     gpu_light some_light[2];
     gpu_emitter some_emitter[2];
+    gpu_environment some_environment[2];
+    gpu_sky_row some_sky_row[2];
     gpu_choice some_choice[2];
     gpu_object_emitter some_object_emitter[2];
     gpu_ray some_ray[2];
@@ -194,7 +196,7 @@ void main()
     put_list(frame.triangles); put_vec3(frame.cells_from); put(frame.inspect);
     put_vec3(frame.inv_cell); put(floatBitsToUint(frame.inspect_scale));
     put(frame.choices); put(frame.object_emitters); put(frame.choice_shift);
-    put(frame.unused_emitters);
+    put(frame.environment);
     put_vec3(frame.lens.right); put(floatBitsToUint(frame.lens.inv_focus)); put_vec3(frame.lens.up);
     put(frame.lens.kind); put_vec3(frame.lens.origin_step);
     put(floatBitsToUint(frame.lens.blade_turns)); put_vec3(frame.lens.forward_step);

@@ -229,6 +229,44 @@ static void test_filters(void **state)
     }
 }
 
+/* A camera that goes 16 m to the right while a frame lasts; its shutter is open for half of it, a
+ * pixel is a metre. */
+static void test_motion(void **state)
+{
+    static const char world[] =
+        "camera: {from: {keys: {0: [0, 0, 8], 1: [16, 0, 8]}}, to: {keys: {0: [0, 0, 0], 1: [16, "
+        "0, "
+        "0]}},\n"
+        "         projection: %s, height: 32, fov: %.17g, shutter: %g}\n"
+        "image: {width: 32, height: 32, samples: 1024, integrator: %s}\n"
+        "background: 0\nambient: 0\nlights: []\n"
+        "objects: [{sphere: {radius: 3, material: {color: 0, emission: 1}}}]\n";
+    for (int i = 0; i < 4; i++) {
+        const char *projection = i % 2 ? "perspective" : "orthographic";
+        const char *integrator = i / 2 ? "path" : "whitted";
+        spread s[2];
+        for (int blurred = 0; blurred < 2; blurred++) {
+            char text[1024];
+            /* In perspective, 32 m are seen 8 m away. */
+            snprintf(text, sizeof text, world, projection, 2 * atan(2) * 180 / PI,
+                     blurred ? 0.5 : 0, integrator);
+            picture p = render_text(*state, text, NULL);
+            s[blurred] = spread_of(&p);
+            free_picture(&p);
+        }
+        if (i % 2) { /* the ball is seen from aside, too, so only its middle is known */
+            assert_near(s[0].x, 16, 0.05);
+            assert_true(s[1].x < 13 && s[1].xx > s[0].xx + 4);
+            continue;
+        }
+        assert_near(s[1].sum, s[0].sum, 0.02 * s[0].sum);
+        assert_near(s[1].x, 16 - 4, 0.1);
+        assert_near(s[1].y, 16, 0.05);
+        assert_near(s[1].xx - s[0].xx, 64 / 12.0, 0.15);
+        assert_near(s[1].yy - s[0].yy, 0, 0.05);
+    }
+}
+
 /* One sample goes through the middle of the pixel, whatever the filter. */
 static void test_single_sample(void **state)
 {
@@ -269,15 +307,11 @@ static void test_pinhole_bits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_orthographic),
-        cmocka_unit_test(test_panorama),
-        cmocka_unit_test(test_lens_focus),
-        cmocka_unit_test(test_blur),
-        cmocka_unit_test(test_blades),
-        cmocka_unit_test(test_pinhole_bits),
-        cmocka_unit_test(test_filters),
-        cmocka_unit_test(test_single_sample),
-        cmocka_unit_test(test_validation_is_silent),
+        cmocka_unit_test(test_orthographic),  cmocka_unit_test(test_panorama),
+        cmocka_unit_test(test_lens_focus),    cmocka_unit_test(test_blur),
+        cmocka_unit_test(test_blades),        cmocka_unit_test(test_pinhole_bits),
+        cmocka_unit_test(test_filters),       cmocka_unit_test(test_motion),
+        cmocka_unit_test(test_single_sample), cmocka_unit_test(test_validation_is_silent),
     };
     return cmocka_run_group_tests(tests, setup_device, NULL);
 }

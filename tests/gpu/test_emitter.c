@@ -18,6 +18,7 @@ typedef struct question {
 
 typedef struct answer {
     float wi[3], t_max, value[3], pdf, found_pdf;
+    float seen[3], seen_pdf; /* of the background along question.normal */
 } answer;
 
 static question asked[COUNT];
@@ -76,7 +77,8 @@ static lr_packed_scene pack(const char *text)
     lr_scene *scene;
     char *report;
     snprintf(name, sizeof name, "%s/test.yaml", folder);
-    int length = snprintf(all, sizeof all, "camera: {}\nbackground: 0\n%s", text);
+    int length = snprintf(all, sizeof all, "camera: {}\n%s%s",
+                          strstr(text, "background") ? "" : "background: 0\n", text);
     if (lr_scene_parse(all, (size_t)length, name, &scene, &report, NULL))
         fail_msg("%s", report);
     lr_settings settings = {.width = 1,
@@ -451,6 +453,128 @@ static void test_spread(void **state)
     }
 }
 
+/* ---- The background ------------------------------------------------------------------------- */
+
+enum { WIDTH = 18, HEIGHT = 9 };
+static float texels[HEIGHT][WIDTH][3];
+
+/* Dark, bright and black texels in random places; bright ones at the poles and where left and right
+ * meet. */
+static void write_picture(uint32_t seed)
+{
+    char path[128];
+    snprintf(path, sizeof path, "%s/all.pfm", folder);
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    fprintf(file, "PF\n%d %d\n-1\n", WIDTH, HEIGHT);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            uint32_t kind = random_bits(&seed) % 8;
+            float scale = kind == 0 ? 100.0f : kind < 3 ? 0.0f : 1.0f;
+            for (int k = 0; k < 3; k++)
+                texels[y][x][k] = scale * random_between(&seed, 0.1, 1);
+        }
+    for (int y = HEIGHT - 1; y >= 0; y--)
+        assert_int_equal(fwrite(texels[y], sizeof texels[y], 1, file), 1);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* What is seen along d, in green, where x, y, z point right, up and forward. */
+static double expect_seen(double x, double y, double z)
+{
+    double u = (0.5 + atan2(x, z) / (2 * PI)) * WIDTH - 0.5;
+    double v = acos(fmax(-1, fmin(y, 1))) / PI * HEIGHT - 0.5, sum = 0;
+    for (int i = 0; i < 4; i++) {
+        int column = (int)floor(u) + (i & 1), row = (int)floor(v) + (i >> 1);
+        double share =
+            (i & 1 ? u - floor(u) : 1 - u + floor(u)) * (i >> 1 ? v - floor(v) : 1 - v + floor(v));
+        row = row < 0 ? 0 : row >= HEIGHT ? HEIGHT - 1 : row;
+        sum += share * (double)texels[row][(column + WIDTH) % WIDTH][1];
+    }
+    return sum;
+}
+
+/* Asks for the background in directions that are spread evenly. */
+static void ask_around(lr_device *device, const lr_packed_scene *packed)
+{
+    uint32_t seed = 7;
+    for (uint32_t i = 0; i < COUNT; i++) {
+        double y = (i + 0.5) / COUNT * 2 - 1, r = sqrt(1 - y * y);
+        double turn = 2 * PI * random_unit(&seed);
+        asked[i] = (question){
+            .choice = random_unit(&seed),
+            .u = {random_unit(&seed), random_unit(&seed)},
+            .normal = {(float)(r * cos(turn)), (float)y, (float)(r * sin(turn))},
+        };
+    }
+    ask(device, packed);
+}
+
+/* Samples fall into the cells of azimuth and height as their pdf, at the evenly spread directions,
+ * says. */
+static void check_pdf_of_cells(void)
+{
+    enum { ACROSS = 24, DOWN = 12 };
+    static double counts[DOWN][ACROSS], expected[DOWN][ACROSS], total;
+    memset(counts, 0, sizeof counts);
+    memset(expected, 0, sizeof expected);
+    total = 0;
+    for (uint32_t i = 0; i < COUNT; i++) {
+        const float *ways[2] = {found[i].wi, asked[i].normal};
+        for (int k = 0; k < 2; k++) {
+            int x = (int)((atan2(ways[k][2], ways[k][0]) / (2 * PI) + 0.5) * ACROSS) % ACROSS;
+            int y = (int)((ways[k][1] + 1) / 2 * DOWN) % DOWN;
+            if (k == 0)
+                counts[y][x]++;
+            else
+                expected[y][x] += found[i].seen_pdf * 4 * PI;
+        }
+        total += found[i].seen_pdf * 4 * PI / COUNT;
+    }
+    assert_near(total, 1, 5e-3);
+    for (int i = 0; i < ACROSS * DOWN; i++) {
+        double count = counts[i / ACROSS][i % ACROSS], mean = expected[i / ACROSS][i % ACROSS];
+        /* The mean is itself one of about 3600 directions, so within a few percent. */
+        if (!(fabs(count - mean) <= 6 * sqrt(mean) + 0.1 * mean + 1))
+            fail_msg("%g samples in cell %d, expected %g", count, i, mean);
+    }
+}
+
+static void test_picture(void **state)
+{
+    for (uint32_t turned = 0; turned < 4; turned++) {
+        char text[512];
+        write_picture(turned);
+        /* Up is y, or z with y ahead; and a quarter turn more. */
+        snprintf(text, sizeof text,
+                 "background: {image: all.pfm, intensity: 3, rotate: %d}\nup: %s\n"
+                 "objects: [sphere: {}]\n",
+                 turned & 1 ? 90 : 0, turned & 2 ? "[0, 0, 1]" : "[0, 1, 0]");
+        lr_packed_scene packed = pack(text);
+        assert_int_equal(packed.constants[LR_SPEC_ENVIRONMENT], 1);
+        assert_int_equal(packed.constants[LR_SPEC_DELTA_LIGHTS], 0);
+        ask_around(*state, &packed);
+        double by_samples = 0, evenly = 0;
+        for (uint32_t i = 0; i < COUNT; i++) {
+            const float *n = asked[i].normal;
+            double x = n[0], y = turned & 2 ? n[2] : n[1], z = turned & 2 ? n[1] : -n[2];
+            if (turned & 1) { /* what was ahead is on the left */
+                double swapped = x;
+                x = z;
+                z = -swapped;
+            }
+            double seen = 3 * expect_seen(x, y, z);
+            assert_near(found[i].seen[1], seen, 1e-3 + 1e-4 * seen);
+            evenly += 4 * PI * found[i].seen[1] * fmax(n[1], 0) / COUNT;
+            by_samples += found[i].value[1] * fmax(found[i].wi[1], 0) / COUNT;
+            assert_near(found[i].t_max, LR_T_MAX, 1e9);
+        }
+        assert_near(by_samples, evenly, 0.01 * evenly);
+        check_pdf_of_cells();
+        lr_packed_scene_free(&packed);
+    }
+}
+
 /* ---- In pictures ---------------------------------------------------------------------------- */
 
 /* A matt floor below a lamp, where half of what arrives is also found by chance. */
@@ -478,11 +602,17 @@ static void test_floor(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_flat),         cmocka_unit_test(test_sphere),
-        cmocka_unit_test(test_box_and_mesh), cmocka_unit_test(test_sides),
-        cmocka_unit_test(test_lights),       cmocka_unit_test(test_choice),
-        cmocka_unit_test(test_pdf),          cmocka_unit_test(test_spread),
-        cmocka_unit_test(test_floor),        cmocka_unit_test(test_validation_is_silent),
+        cmocka_unit_test(test_flat),
+        cmocka_unit_test(test_sphere),
+        cmocka_unit_test(test_box_and_mesh),
+        cmocka_unit_test(test_sides),
+        cmocka_unit_test(test_lights),
+        cmocka_unit_test(test_choice),
+        cmocka_unit_test(test_pdf),
+        cmocka_unit_test(test_spread),
+        cmocka_unit_test(test_picture),
+        cmocka_unit_test(test_floor),
+        cmocka_unit_test(test_validation_is_silent),
     };
     return cmocka_run_group_tests(tests, set_up, teardown);
 }

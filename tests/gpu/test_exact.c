@@ -11,7 +11,21 @@ typedef struct item {
     vec4 a, b;
 } item;
 
-enum { RCP, DIV, RSQRT, SQRT, LOG2, EXP2, POW, LENGTH, DOT, MIX, COS_SIN_TURNS, IS_FINITE };
+enum {
+    RCP,
+    DIV,
+    RSQRT,
+    SQRT,
+    LOG2,
+    EXP2,
+    POW,
+    LENGTH,
+    DOT,
+    MIX,
+    COS_SIN_TURNS,
+    ANGLE_TURNS,
+    IS_FINITE
+};
 
 static item given[COUNT];
 static vec4 found[COUNT];
@@ -272,6 +286,33 @@ static void test_cos_sin_turns(void **state)
     assert_true(worst < 1.2e-7);
 }
 
+static void test_angle_turns(void **state)
+{
+    const double tau = 6.283185307179586476925287;
+    uint32_t seed = 12;
+    for (uint32_t i = 0; i < COUNT; i++) {
+        float scale = random_magnitude(&seed, -80, 98);
+        given[i].a.x = scale * (i % 3 ? random_between(&seed, -1, 1) : random_sign(&seed));
+        given[i].a.y = scale * (i % 3 == 1 ? random_sign(&seed) : random_between(&seed, -1, 1));
+    }
+    const float corners[][3] = {{1, 0, 0},     {1, 1, 0.125f},    {0, 1, 0.25f},   {-1, 1, 0.375f},
+                                {-1, 0, 0.5f}, {-1, -1, -0.375f}, {0, -1, -0.25f}, {0, 0, 0}};
+    for (uint32_t i = 0; i < 8; i++) {
+        given[i].a.x = corners[i][0];
+        given[i].a.y = corners[i][1];
+    }
+    run(state, ANGLE_TURNS);
+    for (uint32_t i = 0; i < 8; i++)
+        assert_near(found[i].x, corners[i][2], 3e-8);
+    double worst = 0;
+    for (uint32_t i = 8; i < COUNT; i++) {
+        double error = fabs(found[i].x - atan2(given[i].a.y, given[i].a.x) / tau);
+        worst = fmax(worst, fmin(error, 1 - error));
+    }
+    print_message("ex_angle_turns: %.3g\n", worst);
+    assert_true(worst < 6e-8);
+}
+
 static void test_is_finite(void **state)
 {
     const float values[] = {0,        -0.0f,     1e-45f, 3.4028235e38f, -3.4028235e38f,
@@ -287,19 +328,13 @@ static void test_is_finite(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rcp),
-        cmocka_unit_test(test_div),
-        cmocka_unit_test(test_rsqrt),
-        cmocka_unit_test(test_sqrt),
-        cmocka_unit_test(test_log2),
-        cmocka_unit_test(test_exp2),
-        cmocka_unit_test(test_pow),
-        cmocka_unit_test(test_length_and_normalize),
-        cmocka_unit_test(test_dot_and_cross),
-        cmocka_unit_test(test_mix),
-        cmocka_unit_test(test_cos_sin_turns),
-        cmocka_unit_test(test_is_finite),
-        cmocka_unit_test(test_validation_is_silent),
+        cmocka_unit_test(test_rcp),           cmocka_unit_test(test_div),
+        cmocka_unit_test(test_rsqrt),         cmocka_unit_test(test_sqrt),
+        cmocka_unit_test(test_log2),          cmocka_unit_test(test_exp2),
+        cmocka_unit_test(test_pow),           cmocka_unit_test(test_length_and_normalize),
+        cmocka_unit_test(test_dot_and_cross), cmocka_unit_test(test_mix),
+        cmocka_unit_test(test_cos_sin_turns), cmocka_unit_test(test_angle_turns),
+        cmocka_unit_test(test_is_finite),     cmocka_unit_test(test_validation_is_silent),
     };
     return cmocka_run_group_tests(tests, setup_device, NULL);
 }

@@ -24,7 +24,11 @@ static const char scene[] =
     "  - cylinder: {from: [2.5, 0, 1], to: [2.5, 1, 1], radius: 0.4, material: glass}\n"
     "  - cone: {from: [0, 0, -2], to: [0, 3, -2], open: true}\n"
     "  - disk: {center: [0, 2, -3], normal: [0, 0, 1], material: {reflect: 0.8}}\n"
+    "  - rectangle: {corner: [-1, 4, -1], u: [2, 0, 0], v: [0, 0, 2], material: {emission: 3}}\n"
+    "  - sphere: {center: [1, 0.3, 1.5], radius: 0.2, material: {emission: [2, 1, 0]}}\n"
     "  - triangle: {a: [-3, 0, -2], b: [-2, 0, -2], c: [-2.5, 2, -2]}\n";
+
+static const lr_integrator integrators[] = {LR_INTEGRATOR_WHITTED, LR_INTEGRATOR_PATH};
 
 static void hash_of(lr_device *device, const lr_render_options *options, char hash[65])
 {
@@ -51,14 +55,55 @@ static void test_tiles_and_chunks(void **state)
         {.storage_loads = true},
         {.storage_loads = true, .tile_size = 33, .chunk_rays = 2048},
     };
-    char reference[65], small[65], hash[65];
-    hash_of(*state, NULL, reference);
-    hash_of(*state, &(lr_render_options){.width = 5, .height = 3}, small);
-    assert_string_not_equal(reference, small);
-    for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
-        hash_of(*state, &options[i], hash);
-        assert_string_equal(hash, options[i].width ? small : reference);
+    for (int k = 0; k < 2; k++) {
+        char reference[65], small[65], hash[65];
+        lr_render_options plain = {.integrator = integrators[k]};
+        hash_of(*state, &plain, reference);
+        plain.width = 5;
+        plain.height = 3;
+        hash_of(*state, &plain, small);
+        assert_string_not_equal(reference, small);
+        for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
+            lr_render_options cut = options[i];
+            cut.integrator = integrators[k];
+            hash_of(*state, &cut, hash);
+            assert_string_equal(hash, options[i].width ? small : reference);
+        }
     }
+}
+
+/* Glass, mirrors and lamps among more objects than rays test one by one. */
+static void test_paths_through_trees(void **state)
+{
+    static const char *const materials[] = {"glass", "lamp", "matt", "mirror"};
+    char text[8192];
+    FILE *out = fmemopen(text, sizeof text, "w");
+    fputs("camera: {from: [0, 3, 9], to: [0, 1, 0]}\n"
+          "image: {width: 61, height: 47, samples: 3, depth: 5, integrator: path}\n"
+          "materials: {glass: {transmit: 1, fresnel: true}, lamp: {emission: 4}, matt: {}, mirror: "
+          "{reflect: 0.9}}\n"
+          "lights: [point: {position: [4, 6, 3], intensity: 20}]\nobjects:\n- plane: {}\n",
+          out);
+    for (int i = 0; i < 48; i++)
+        fprintf(out, "- sphere: {center: [%d, %d, %d], radius: 0.4, material: %s}\n", i % 7 - 3,
+                i % 3 + 1, i % 5 - 2, materials[i % 4]);
+    fclose(out);
+    const lr_render_options options[] = {
+        {.tile_size = 8, .chunk_rays = 64},
+        {.tile_size = 33, .chunk_rays = 2000, .storage_loads = true},
+        {.single_rays = true},
+        {.leaf_size = 7},
+    };
+    picture whole = render_text(*state, text, NULL);
+    for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
+        picture cut = render_text(*state, text, &options[i]);
+        assert_string_equal(cut.stats.hash, whole.stats.hash);
+        assert_int_equal(cut.stats.bounced.traced, whole.stats.bounced.traced);
+        assert_int_equal(cut.stats.shadow.hit, whole.stats.shadow.hit);
+        free_picture(&cut);
+    }
+    assert_true(whole.stats.bounced.traced > 0 && whole.stats.shadow.hit > 0);
+    free_picture(&whole);
 }
 
 static void test_storage_loads_of_one_tile(void **state)
@@ -74,8 +119,12 @@ static void test_storage_loads_of_one_tile(void **state)
 /* A crop is that part of the whole picture, bit for bit. */
 static void test_crop(void **state)
 {
-    picture whole = render_text(*state, scene, NULL);
-    lr_render_options options = {.crop = {.x = 13, .y = 9, .width = 30, .height = 21}};
+    lr_render_options options = {.integrator = LR_INTEGRATOR_PATH};
+    picture whole = render_text(*state, scene, &options);
+    options.crop.x = 13;
+    options.crop.y = 9;
+    options.crop.width = 30;
+    options.crop.height = 21;
     for (uint32_t tile_size = 0; tile_size <= 7; tile_size += 7) {
         options.tile_size = tile_size;
         picture part = render_text(*state, scene, &options);
@@ -129,6 +178,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_tiles_and_chunks),
+        cmocka_unit_test(test_paths_through_trees),
         cmocka_unit_test(test_storage_loads_of_one_tile),
         cmocka_unit_test(test_crop),
         cmocka_unit_test(test_repetition),

@@ -35,8 +35,8 @@ static void test_surroundings(void **state)
     (void)state;
     lr_scene *scene = good("# a comment\nb 0.1 0.2 0.3 # and another\n" VIEW
                            "l 4 3 2\nl 1 -4 4\n\nl -3 1 5 1 0.5 0\n" FILL "s 0 0 0 1\n");
-    assert_vec3(scene->background[0], 0.1, 0.2, 0.3);
-    assert_vec3(scene->background[1], 0.1, 0.2, 0.3);
+    assert_vec3(scene->background.colors[0], 0.1, 0.2, 0.3);
+    assert_vec3(scene->background.colors[1], 0.1, 0.2, 0.3);
     assert_int_equal(scene->camera_count, 1);
     const lr_camera *camera = &scene->cameras[0];
     assert_vec3(camera->from, 1, 2, 3);
@@ -66,7 +66,7 @@ static void test_surroundings(void **state)
     lr_scene_destroy(scene);
 
     scene = good(VIEW FILL "s 0 0 0 1");
-    assert_vec3(scene->background[0], 0, 0, 0);
+    assert_vec3(scene->background.colors[0], 0, 0, 0);
     assert_true(scene->default_light);
     assert_int_equal(scene->note_count, 1);
     assert_string_equal(scene->notes[0], "s.nff: no lights, one that suits the camera added");

@@ -37,8 +37,8 @@ static void test_defaults(void **state)
     assert_int_equal(s->image.tone, LR_TONE_NONE);
     assert_near(s->image.white, 0, 0);
     assert_vec(s->ambient, 0.1, 0.1, 0.1);
-    assert_vec(s->background[0], 1, 1, 1);
-    assert_vec(s->background[1], 0.4, 0.6, 1);
+    assert_vec(s->background.colors[0], 1, 1, 1);
+    assert_vec(s->background.colors[1], 0.4, 0.6, 1);
     assert_vec(s->background_up, 0, 1, 0);
     assert_near(s->fog_density, 0, 0);
     assert_true(s->default_light);
@@ -89,8 +89,8 @@ static void test_top_level(void **state)
     assert_vec(s->cameras[1].up, 1, 0, 0);
     assert_int_equal(s->cameras[1].line, 10);
     assert_vec(s->background_up, 0, 0, 1);
-    assert_vec(s->background[0], 0, 0, 0);
-    assert_vec(s->background[1], 0, 0, 0);
+    assert_vec(s->background.colors[0], 0, 0, 0);
+    assert_vec(s->background.colors[1], 0, 0, 0);
     assert_vec(s->ambient, 0.1, 0.2, 0.3);
     assert_vec(s->fog_color, 1, 0, 0);
     assert_near(s->fog_density, 0.25, 0);

@@ -157,8 +157,14 @@ static void compare(const lr_scene *a, const lr_scene *b)
     SAME(texture_count);
     SAME(default_light);
     SAME(ambient);
-    SAME(background[0]);
-    SAME(background[1]);
+    SAME(background.colors[0]);
+    SAME(background.colors[1]);
+    SAME(background.kind);
+    SAME(background.intensity);
+    SAME(background.rotate);
+    SAME(background.turbidity);
+    SAME(background.ground);
+    SAME(background.sun);
     near_vec3("up", a->background_up, b->background_up);
     SAME(fog_density);
     if (a->fog_density > 0)

@@ -6,7 +6,7 @@
 For each scene: the ratio of the pictures' means per channel, and the share of samples (pixels'
 channels) whose difference is within a bound. Their noise is that of the seeds' renders and the
 reference's standard error; the bound is what t exceeds in one of a thousand samples that differ by
-noise alone, so 99.9 % are expected within it. --keep writes FOLDER/NAME.pfm, the mean, and
+normal noise alone, so at least 99.9 % are expected within it. --keep writes FOLDER/NAME.pfm, the mean, and
 FOLDER/NAME-t.pfm, where red is brighter than the reference and blue darker, 1 being the bound. Exit
 code 1 when a scene fails.
 """
@@ -84,6 +84,20 @@ def t_share(mean, variance, count, reference, error, reference_count):
     return (mean - reference) / math.sqrt(noise + rounding) / student_bound(freedom, NORMAL_BOUND)
 
 
+def variances(stacks, means, width):
+    """Of each sample's renders, or of those around it if that is more: where all renders have missed a
+    rare way of bright light, they agree with each other as well."""
+    own = [statistics.variance(s, m) for s, m in zip(stacks, means)]
+    row, height = 3 * width, len(own) // (3 * width)
+    result = []
+    for i, variance in enumerate(own):
+        x, y = i % row, i // row
+        around = [own[v * row + u] for v in range(max(y - 1, 0), min(y + 2, height))
+                  for u in range(x - 3 if x >= 3 else x, min(x + 4, row), 3)]
+        result.append(max(variance, statistics.fmean(around)))
+    return result
+
+
 def ratios(renders, reference, error):
     """Per channel the ratio of the means to the reference's, and its standard error."""
     for channel in range(3):
@@ -123,8 +137,8 @@ def judge(name, arguments):
         renders = [render(arguments, name, size, seed, work) for seed in range(arguments.seeds)]
     stacks = list(zip(*renders))
     means = [statistics.fmean(s) for s in stacks]
-    t = [t_share(m, statistics.variance(s, m), len(renders), r, e, count)
-         for m, s, r, e in zip(means, stacks, reference, error)]
+    t = [t_share(m, v, len(renders), r, e, count)
+         for m, v, r, e in zip(means, variances(stacks, means, size[0]), reference, error)]
     if arguments.keep:
         write_maps(arguments.keep, name, size, means, t)
     share = sum(abs(x) <= 1 for x in t) / len(t)

@@ -123,14 +123,20 @@ def sphere(center=(0, 0, 0), radius=1):
     return {"type": "sphere", "center": [float(x) for x in center], "radius": float(radius)}
 
 
-SHAPES = {"rectangle": rectangle, "disk": disk, "box": box, "sphere": sphere}
+def mesh(file):
+    return {"type": "ply", "filename": file, "face_normals": True}
 
 
-def shape(kind, o, materials):
+SHAPES = {"rectangle": rectangle, "disk": disk, "box": box, "sphere": sphere, "mesh": mesh}
+
+
+def shape(kind, o, materials, folder):
     o = dict(o)
     name = o.pop("material", {})
     bsdf, emitter = material(materials[name] if isinstance(name, str) else name)
     moved = placement(o.pop("scale", 1), o.pop("rotate", [0, 0, 0]), o.pop("translate", [0, 0, 0]))
+    if "file" in o:
+        o["file"] = os.path.join(folder, o["file"])
     result = SHAPES[kind](**o)
     result["to_world"] = moved @ result.get("to_world", mi.ScalarTransform4f())
     result["bsdf"] = bsdf
@@ -180,6 +186,18 @@ def background(value, folder):
 
 # ---- The whole
 
+def choose_by_power(shapes):
+    """Mitsuba chooses lights at random; so that bright ones are chosen more often, which changes the
+    noise alone."""
+    powers = []
+    for s in shapes:
+        bare = mi.load_dict({key: value for key, value in s.items() if key != "emitter"})
+        area = float(np.ravel(bare.surface_area())[0])
+        powers.append(area * max(s["emitter"]["radiance"]["value"]))
+    for s, power in zip(shapes, powers):
+        s["emitter"]["sampling_weight"] = power / np.mean(powers)
+
+
 def sensor(camera, width, height):
     origin, target, fov, aperture, focus = take(
         camera, **{"from": [0, 1, 5], "to": [0, 0, 0], "fov": 40, "aperture": 0, "focus": 0})
@@ -189,7 +207,7 @@ def sensor(camera, width, height):
         "film": {"type": "hdrfilm", "width": width, "height": height, "pixel_format": "rgb",
                  "component_format": "float32", "rfilter": {"type": "box"}}}
     if aperture:
-        result.update(aperture_radius=float(aperture), focus_distance=float(focus))
+        result.update(aperture_radius=float(aperture) / 2, focus_distance=float(focus))
     return result
 
 
@@ -197,17 +215,19 @@ def load(path, size=None):
     """The scene file at path, with another width and height if size is given."""
     with open(path, encoding="utf-8") as file:
         scene = yaml.safe_load(file)
+    folder = os.path.dirname(path)
     camera, image, around, materials, lights, objects = take(
         scene, camera=None, image=None, background=0, materials={}, lights=None, objects=None)
     width, height, _, depth, _ = take(image, width=640, height=480, samples=1, depth=6, integrator="path")
     result = {"type": "scene", "integrator": {"type": "path", "max_depth": depth + 2},
               "sensor": sensor(camera, *(size or (width, height)))}
     if isinstance(around, dict) or np.any(rgb(around)):
-        result["background"] = background(around, os.path.dirname(path))
+        result["background"] = background(around, folder)
     for i, item in enumerate(lights):
         ((kind, light),) = item.items()
         result["light%d" % i] = LIGHTS[kind](**light)
     for i, item in enumerate(objects):
         ((kind, o),) = item.items()
-        result["object%d" % i] = shape(kind, o, materials)
+        result["object%d" % i] = shape(kind, o, materials, folder)
+    choose_by_power([s for s in result.values() if "emitter" in s])
     return result
