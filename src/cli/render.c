@@ -20,7 +20,7 @@ typedef struct values {
     picture_values picture;
     option_rectangle crop;
     option_range sample_range;
-    double checkpoint_seconds, time;
+    double checkpoint_seconds, time, noise;
     int64_t tile, chunk;
     load_values load;
     bool storage_loads, quiet, verbose;
@@ -66,6 +66,15 @@ static const option options[] = {
      .help = "as many samples as fit in 500ms, 60s, 10m, 2h, ..., at\n"
              "least 1 and at most --spp; for --integrator path",
      .also = "seconds|limit|timeout"},
+    {.name = "noise",
+     .kind = OPTION_REAL,
+     AT(noise),
+     .value = "X",
+     .min = 0,
+     .max = 1,
+     .help = "no more samples where the noise is below X: 0.01 is\n"
+             "about one of 255 shades; at most --spp; for paths",
+     .also = "adaptive|threshold|error"},
     {.name = "checkpoint",
      .kind = OPTION_TEXT,
      AT(checkpoint),
@@ -234,6 +243,7 @@ static lr_render_options make_options(const values *v, progress *p)
         made.sample_range.count = v->sample_range.last - v->sample_range.first + 1;
     }
     made.seconds = v->time;
+    made.noise = v->noise;
     made.checkpoint = v->checkpoint;
     made.checkpoint_seconds = v->checkpoint_seconds;
     made.tile_size = (uint32_t)v->tile;

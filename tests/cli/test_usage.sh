@@ -16,7 +16,7 @@ done
 expect 0 "$lavaray" render --help
 says out '^For tests: the picture does not depend on these:'
 for flag in output format size spp depth seed maxval transfer half exposure tone white denoise camera crop \
-    sample-range time checkpoint device stats quiet \
+    sample-range time noise checkpoint device stats quiet \
     verbose tile chunk storage-loads; do
     says out "--$flag( |$)"
 done
