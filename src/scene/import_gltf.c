@@ -298,7 +298,8 @@ static lr_status note_extensions(lr_import *import)
     static const char *const known[] = {
         "KHR_lights_punctual",        "KHR_materials_ior",
         "KHR_materials_transmission", "KHR_texture_transform", /* noted at the material */
-        "KHR_materials_volume",       "KHR_materials_emissive_strength"};
+        "KHR_materials_volume",       "KHR_materials_emissive_strength",
+        "KHR_materials_clearcoat",    "KHR_materials_sheen"};
     const json_t *used = json_object_get(import->json, "extensionsUsed");
     lr_status status = LR_OK;
     for (size_t i = 0; !status && i < json_array_size(used); i++) {

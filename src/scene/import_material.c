@@ -76,6 +76,18 @@ static void set_transmission(const json_t *json, lr_color base, double share, lr
     }
 }
 
+/* What only paths see. */
+static void set_layers(const json_t *json, lr_material *material)
+{
+    const json_t *coat = lr_gltf_extension(json, "KHR_materials_clearcoat");
+    const json_t *sheen = lr_gltf_extension(json, "KHR_materials_sheen");
+    material->clearcoat = clamp(lr_gltf_number(coat, "clearcoatFactor", 0), 0, 1);
+    material->clearcoat_roughness =
+        clamp(lr_gltf_number(coat, "clearcoatRoughnessFactor", 0), 0, 1);
+    material->sheen = gltf_color(sheen, "sheenColorFactor", 0, 1);
+    material->sheen_roughness = clamp(lr_gltf_number(sheen, "sheenRoughnessFactor", 0), 0, 1);
+}
+
 /* Colour, highlight, mirror, matt share and what goes through. */
 static void set_surface(const json_t *json, bool as_metal, lr_material *material)
 {
@@ -104,6 +116,15 @@ static void set_surface(const json_t *json, bool as_metal, lr_material *material
     material->diffuse = grey((1 - metallic) * (1 - transmission) + metallic * (1 - mirror));
     if (transmission * (1 - metallic) > 0)
         set_transmission(json, base, transmission * (1 - metallic), material);
+    /* What has no inside has no index of refraction here: paths see it as the classic shading does.
+     */
+    if (transmission > 0 && material->ior == 1)
+        return;
+    material->model = LR_MODEL_PBR;
+    material->roughness = roughness;
+    material->metallic = metallic;
+    material->transmission = transmission;
+    set_layers(json, material);
 }
 
 /* Sets what alphaMode says; true when that is only nearly what it means. */
@@ -118,6 +139,8 @@ static bool set_alpha(const json_t *json, lr_material *material)
         return false;
     double alpha = json_is_number(item) ? clamp(json_number_value(item), 0, 1) : 1;
     bool through = greatest(material->transmit) > 0;
+    if (alpha < 1)
+        material->model = LR_MODEL_CLASSIC;
     material->alpha_cutoff = lr_gltf_member(pbr, "baseColorTexture") ? 0.5 : 0;
     material->diffuse = lr_vec3_scale(material->diffuse, alpha);
     material->transmit = lr_vec3_add(lr_vec3_scale(material->transmit, alpha), grey(1 - alpha));

@@ -69,7 +69,8 @@ def material(color, diffuse, specular, transmit, shininess, ior, one_sided):
     real(ior)
     whole(0, 0)
     real(0)
-    whole(one_sided, 0)
+    whole(one_sided, 0, 0)
+    real(*[0] * 6, *[0] * 9)
 
 
 def instance(kind, material, inward):

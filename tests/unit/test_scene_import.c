@@ -50,6 +50,9 @@ static void test_gltf_material(void **state)
     const lr_material *m = &scene->materials[scene->objects[0].material];
     assert_string_equal(m->name, "m");
     assert_near(m->color.colors[0].y, 0.25, 1e-12);
+    assert_int_equal(m->model, LR_MODEL_PBR);
+    assert_near(m->metallic, 1, 0);
+    assert_near(m->roughness, 0.25, 0);
     /* w = 1 - 2 * 0.25; F0 of a metal is its colour. */
     assert_near(m->reflect.x, 0.25, 1e-12);
     assert_near(m->diffuse.x, 0.5, 1e-12);
