@@ -3,6 +3,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "scene/camera.h"
 #include "scene/keys.h"
 #include "scene/report.h"
 #include "scene/write.h"
@@ -134,6 +135,12 @@ static bool is_written(const lr_field *field)
     return field->type <= LR_FIELD_COLORS;
 }
 
+static void put_field(mapping *map, const lr_field *field, const void *value)
+{
+    put_key(map, field->name);
+    put_value(map->out, field, value);
+}
+
 /* The fields of a record that are not defaults; `left_out` is one that another one says. */
 static void put_record(mapping *map, const lr_record *record, const void *base,
                        const char *left_out)
@@ -144,9 +151,32 @@ static void put_record(mapping *map, const lr_record *record, const void *base,
         if (!is_written(field) || is_default(field, value) ||
             (left_out && strcmp(field->name, left_out) == 0))
             continue;
-        put_key(map, field->name);
-        put_value(map->out, field, value);
+        put_field(map, field, value);
     }
+}
+
+static bool same_numbers(const lr_field *field, const void *a, const void *b)
+{
+    size_t count = field->type == LR_FIELD_VECTOR ? 3 : field->type == LR_FIELD_NUMBER ? 1 : 0;
+    const double *x = a, *y = b;
+    bool same = true;
+    for (size_t i = 0; i < count; i++)
+        same = same && x[i] == y[i];
+    return same;
+}
+
+/* A value that is another one at a later frame. */
+static void put_moving(mapping *map, const lr_field *field, const void *value, double frame,
+                       const void *later)
+{
+    put_key(map, field->name);
+    fputs("{keys: {0: ", map->out);
+    put_value(map->out, field, value);
+    fputs(", ", map->out);
+    lr_put_number(map->out, frame);
+    fputs(": ", map->out);
+    put_value(map->out, field, later);
+    fputs("}}", map->out);
 }
 
 static const lr_record *record_of(const lr_record *records, uint32_t count, int kind)
@@ -162,7 +192,16 @@ static const lr_record *record_of(const lr_record *records, uint32_t count, int 
 void lr_put_camera(FILE *out, const lr_camera *camera)
 {
     mapping map = {.out = out};
-    put_record(&map, &lr_camera_record, camera, NULL);
+    lr_camera closing = lr_camera_closing(camera);
+    for (uint32_t i = 0; i < lr_camera_record.count; i++) {
+        const lr_field *field = &lr_camera_record.fields[i];
+        const void *value = (const char *)camera + field->offset;
+        const void *later = (const char *)&closing + field->offset;
+        if (!same_numbers(field, value, later))
+            put_moving(&map, field, value, camera->shutter, later);
+        else if (!is_default(field, value))
+            put_field(&map, field, value);
+    }
     end_mapping(&map);
 }
 
