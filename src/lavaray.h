@@ -340,6 +340,20 @@ typedef struct lr_render_options {
     struct {
         uint32_t x, y, width, height; /* of the picture; width 0: all of it */
     } crop;
+    /* Of the picture's samples only count from number `first` on; count 0: all. */
+    struct {
+        uint32_t first, count;
+    } sample_range;
+    /* 0, or how long the call may take: every pixel gets as many samples as fit, at least one and
+     * at most `samples` (0: 65536). The picture is that of so many samples; stats->samples tells
+     * how many. For LR_INTEGRATOR_PATH alone, whose first samples are those of any number, and
+     * neither with sample_range nor checkpoint. */
+    double seconds;
+    /* NULL, or a file that keeps what has been traced, now and then and when the render ends early,
+     * so that a later call with the same scene and settings goes on from there. The caller deletes
+     * it once the picture is safe. LR_ERROR_FILE when it is anything else already. */
+    const char *checkpoint;
+    double checkpoint_seconds; /* between two writings, at least; 0: 30 */
     /* How the work is cut up. The picture does not depend on these; zero picks good values. */
     uint32_t tile_size;  /* pixels along a tile's side */
     uint32_t chunk_rays; /* rays handed to the device at once */
@@ -353,9 +367,16 @@ typedef struct lr_render_options {
     void *user;
 } lr_render_options;
 
+#define LR_SETTINGS_TEXT 512
+
 typedef struct lr_render_stats {
     uint32_t width, height, samples, depth, seed;
     lr_integrator integrator;
+    uint32_t first_sample, sample_count; /* of the samples: which were asked for */
+    char settings[LR_SETTINGS_TEXT]; /* what the pixels depend on beside the scene, as files say it
+                                      */
+    double resumed;               /* the share of the samples that a checkpoint brought, 0 to 1 */
+    char checkpoint_problem[256]; /* why the last checkpoint could not be written; "" */
     struct {
         uint64_t traced, hit;
     } primary, reflected, refracted, shadow, bounced; /* bounced: the later rays of paths */
@@ -377,6 +398,29 @@ typedef struct lr_render_stats {
 /* Renders the scene; the caller frees *picture. stats may be NULL. */
 lr_status lr_render(lr_device *device, const lr_scene *scene, const lr_render_options *options,
                     lr_picture *picture, lr_render_stats *stats, lr_error *error);
+
+/* Renders the scene as lr_render does and writes the exact sums of its pixels to path: a part, for
+ * lr_merge_parts. It is an EXR file; docs/parts.md has its channels. */
+lr_status lr_render_part(lr_device *device, const lr_scene *scene, const lr_render_options *options,
+                         const char *path, lr_render_stats *stats, lr_error *error);
+
+/* A picture made of parts. */
+typedef struct lr_merge_info {
+    char scene_hash[65]; /* of the scene's text, as in lr_scene_info; of the first part's */
+    char settings[LR_SETTINGS_TEXT]; /* as in lr_render_stats */
+    char missing[200];               /* samples that no part has, such as "16-31, 48"; "" */
+    char hash[65];                   /* of the picture; see lr_picture_hash */
+    float exposure, white;           /* image.exposure and image.white of the scene, */
+    lr_tone tone;                    /* ... and image.tone */
+    uint32_t samples;                /* of all parts together */
+} lr_merge_info;
+
+/* Adds up the parts at these paths, in any order; the picture has the pixels that lr_render makes
+ * of all samples. The caller frees it. LR_ERROR_FILE when a file cannot be read or is no part, when
+ * parts belong to different pictures, or have samples in common; without `partial` also when
+ * samples are missing. info may be NULL. */
+lr_status lr_merge_parts(const char *const *paths, uint32_t count, bool partial,
+                         lr_picture *picture, lr_merge_info *info, lr_error *error);
 
 /* ---- Explaining a pixel --------------------------------------------------------------------
  *

@@ -21,7 +21,7 @@ typedef struct command {
 
 extern const command command_render, command_devices, command_doctor, command_validate,
     command_schema, command_compare, command_test, command_convert, command_info, command_view,
-    command_explain;
+    command_explain, command_merge;
 
 /* One line on stderr, with "lavaray: " in front. */
 void print_error(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -10,38 +10,29 @@
 struct progress;
 struct render_record;
 
-/* A member of a command's values. */
+/* A member of encoding_values. */
 typedef struct look_values {
     const char *tone; /* NULL: not given */
     double white;     /* 0: not given */
-    bool denoise;
 } look_values;
 
-/* The lines of the table; `type` has a member `look` of the above. */
+/* The lines of the table; `type` has a member `encoding` of encoding_values. */
 #define LOOK_OPTIONS(type)                                                                         \
     {.name = "tone",                                                                               \
      .kind = OPTION_CHOICE,                                                                        \
-     .offset = offsetof(type, look.tone),                                                          \
+     .offset = offsetof(type, encoding.look.tone),                                                 \
      .value = "MAP",                                                                               \
      .choices = "none|reinhard|aces|agx",                                                          \
      .help = "how light becomes a colour of PPM and PNG: none\n"                                   \
              "(clipped at 1), reinhard, aces or agx; default: the\n"                               \
              "scene's",                                                                            \
      .also = "tonemap|tone-map|view-transform"},                                                   \
-        {.name = "white",                                                                          \
-         .kind = OPTION_REAL,                                                                      \
-         .offset = offsetof(type, look.white),                                                     \
-         .value = "K",                                                                             \
-         .min = LR_WHITE_MIN,                                                                      \
-         .max = LR_WHITE_MAX,                                                                      \
-         .help = "white balance: light of this colour temperature, 1667\n"                         \
-                 "to 25000 kelvin, becomes white; default: the scene's",                           \
-         .also = "temperature|white-balance|kelvin"},                                              \
     {                                                                                              \
-        .name = "denoise", .kind = OPTION_FLAG, .offset = offsetof(type, look.denoise),            \
-        .help = "remove noise with Open Image Denoise, where it is\n"                              \
-                "installed; its bytes may differ between computers",                               \
-        .also = "denoiser|oidn"                                                                    \
+        .name = "white", .kind = OPTION_REAL, .offset = offsetof(type, encoding.look.white),       \
+        .value = "K", .min = LR_WHITE_MIN, .max = LR_WHITE_MAX,                                    \
+        .help = "white balance: light of this colour temperature, 1667\n"                          \
+                "to 25000 kelvin, becomes white; default: the scene's",                            \
+        .also = "temperature|white-balance|kelvin"                                                 \
     }
 
 /* Whether the flags suit the format. Returns an exit_code, having printed what is wrong. */

@@ -12,10 +12,10 @@
 #include <time.h>
 #include <unistd.h>
 
-static const command *const commands[] = {&command_render,  &command_view,    &command_explain,
-                                          &command_devices, &command_doctor,  &command_validate,
-                                          &command_info,    &command_convert, &command_schema,
-                                          &command_compare, &command_test};
+static const command *const commands[] = {&command_render,   &command_merge,   &command_view,
+                                          &command_explain,  &command_devices, &command_doctor,
+                                          &command_validate, &command_info,    &command_convert,
+                                          &command_schema,   &command_compare, &command_test};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 static bool is_terminal(int fd)

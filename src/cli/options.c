@@ -141,6 +141,16 @@ bool parse_rectangle(const char *text, int64_t max, option_rectangle *rectangle)
     return good;
 }
 
+static bool parse_range(const char *text, int64_t min, int64_t max, option_range *range)
+{
+    int64_t low[2] = {min, min};
+    uint32_t ends[2] = {0};
+    bool good = strchr(text, '-') ? parse_integers(text, "-", 2, low, max, ends)
+                                  : parse_integers(text, "", 1, low, max, ends);
+    *range = (option_range){ends[0], strchr(text, '-') ? ends[1] : ends[0], true};
+    return good && range->first <= range->last;
+}
+
 /* "4096", "512M", "1.5G": bytes, in units of 1024. */
 static bool parse_bytes(const char *text, int64_t min, int64_t *bytes)
 {
@@ -156,6 +166,27 @@ static bool parse_bytes(const char *text, int64_t min, int64_t *bytes)
         value *= 1024;
     *bytes = value <= 9e18 ? (int64_t)value : 0;
     return *bytes >= min;
+}
+
+/* "500ms", "60s", "1.5m", "2h": seconds. */
+static bool parse_duration(const char *text, int64_t max, double *seconds)
+{
+    static const struct {
+        const char *name;
+        double seconds;
+    } units[] = {{"ms", 1e-3}, {"s", 1}, {"m", 60}, {"min", 60}, {"h", 3600}};
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || strspn(text, "0123456789.") != (size_t)(end - text)) {
+        return false;
+    }
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        if (strcmp(end, units[i].name) == 0) {
+            *seconds = value * units[i].seconds;
+            return *seconds > 0 && *seconds <= (double)max;
+        }
+    }
+    return false;
 }
 
 static parse_result store_value(const command *self, const option *o, const char *text,
@@ -202,6 +233,10 @@ static parse_result store_value(const command *self, const option *o, const char
         snprintf(expected, sizeof expected, "a size of at least %lld bytes, such as 512M or 8G",
                  min);
         break;
+    case OPTION_DURATION:
+        good = parse_duration(text, o->max, (double *)target);
+        snprintf(expected, sizeof expected, "a time such as 500ms, 60s, 10m or 2h");
+        break;
     case OPTION_REAL: {
         char *end;
         double value = strtod(text, &end);
@@ -229,6 +264,11 @@ static parse_result store_value(const command *self, const option *o, const char
                  o->value, max);
         break;
     }
+    case OPTION_RANGE:
+        good = parse_range(text, o->min, o->max, (option_range *)target);
+        snprintf(expected, sizeof expected, "%s such as 0-15, from %lld to %lld", o->value, min,
+                 max);
+        break;
     case OPTION_RECTANGLE:
         good = parse_rectangle(text, o->max, (option_rectangle *)target);
         snprintf(expected, sizeof expected,
@@ -268,7 +308,8 @@ static const option *find_option(const command *self, const char *argument, cons
 
 static parse_result check_operands(const command *self, int count, char **operands)
 {
-    if (count < self->min_operands && self->min_operands == 1) {
+    bool scenes = strncmp(self->operands, "SCENE", 5) == 0;
+    if (count < self->min_operands && self->min_operands == 1 && scenes) {
         return usage_error(self, "no scene given", "", "");
     }
     if (count < self->min_operands) {

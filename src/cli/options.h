@@ -19,8 +19,10 @@ typedef enum option_kind {
     OPTION_SIZE,      /* option_size, each within min..max: 640x480 */
     OPTION_POINT,     /* option_point, each at most max: 320,240 */
     OPTION_RECTANGLE, /* option_rectangle, each within min..max: 10,20,64,48 */
+    OPTION_RANGE,     /* option_range, each within min..max: 0-15, or one number */
     OPTION_CHOICE,    /* const char *, one of choices */
     OPTION_BYTES,     /* int64_t, at least min: 512M, 1.5G, 4096 */
+    OPTION_DURATION,  /* double, seconds, up to max: 500ms, 60s, 10m, 2h */
     OPTION_REPEATED,  /* option_texts: a text, any number of times up to OPTION_REPEATED_MAX */
 } option_kind;
 
@@ -37,6 +39,11 @@ typedef struct option_rectangle {
     uint32_t x, y, width, height;
 } option_rectangle;
 
+typedef struct option_range {
+    uint32_t first, last; /* last >= first */
+    bool given;
+} option_range;
+
 enum { OPTION_REPEATED_MAX = 64 };
 
 typedef struct option_texts {
@@ -51,7 +58,8 @@ typedef struct option {
     size_t offset;       /* of the value in the command's own struct, which holds the defaults */
     const char *value;   /* what stands for the value in help, such as "N" */
     const char *help;    /* may hold several lines */
-    int64_t min, max;    /* OPTION_INTEGER, OPTION_REAL, OPTION_SIZE, ..._POINT, ..._RECTANGLE */
+    int64_t min, max;    /* OPTION_INTEGER, OPTION_REAL, OPTION_SIZE, ..._POINT, ..._RECTANGLE,
+                            ..._RANGE */
     const char *choices; /* OPTION_CHOICE: "srgb|linear" */
     const char *also;    /* other names people try, "a|b": suggested, not accepted */
     bool for_tests;      /* listed last in help */

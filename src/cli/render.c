@@ -1,4 +1,5 @@
 #include "cli/cli.h"
+#include "cli/encoding.h"
 #include "cli/frames.h"
 #include "cli/load.h"
 #include "cli/look.h"
@@ -6,7 +7,6 @@
 #include "cli/picture.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
-#include "image/image.h"
 
 #include <limits.h>
 #include <math.h>
@@ -16,65 +16,23 @@
 #include <unistd.h>
 
 typedef struct values {
-    const char *output, *format, *transfer, *stats, *frames;
-    int64_t maxval;  /* -1: not given */
-    double exposure; /* NaN: not given */
+    const char *stats, *checkpoint, *frames;
+    encoding_values encoding;
     picture_values picture;
     option_rectangle crop;
+    option_range sample_range;
+    double checkpoint_seconds, time;
     int64_t tile, chunk;
     load_values load;
-    look_values look;
-    bool half, storage_loads, quiet, verbose;
+    bool denoise, storage_loads, quiet, verbose;
 } values;
 
 #define AT(member) .offset = offsetof(values, member)
 
 static const option options[] = {
-    {.name = "output",
-     .letter = 'o',
-     .kind = OPTION_TEXT,
-     AT(output),
-     .value = "FILE",
-     .help = "the picture, in the format of its ending: .ppm, .png,\n"
-             ".pfm or .exr (linear floats); \"-\" is standard output",
-     .also = "out|file"},
-    {.name = "format",
-     .kind = OPTION_CHOICE,
-     AT(format),
-     .value = "FORMAT",
-     .choices = "ppm|png|pfm|exr",
-     .help = "ppm, png, pfm or exr, whatever the name ends in;\n"
-             "default for standard output: ppm",
-     .also = "type"},
+    OUTPUT_OPTIONS(values),
     PICTURE_OPTIONS(values),
-    {.name = "maxval",
-     .kind = OPTION_INTEGER,
-     AT(maxval),
-     .value = "N",
-     .min = 1,
-     .max = 65535,
-     .help = "the value of white: 1 to 65535 for PPM, 255 or 65535\nfor PNG; default: 255",
-     .also = "bits|bit-depth"},
-    {.name = "transfer",
-     .kind = OPTION_CHOICE,
-     AT(transfer),
-     .value = "CURVE",
-     .choices = "srgb|linear",
-     .help = "srgb (default) or linear; PFM and EXR are linear",
-     .also = "gamma"},
-    {.name = "half",
-     .kind = OPTION_FLAG,
-     AT(half),
-     .help = "16-bit floats in EXR; default: 32 bits, exact",
-     .also = "float|exr"},
-    {.name = "exposure",
-     .kind = OPTION_REAL,
-     AT(exposure),
-     .value = "EV",
-     .min = -64,
-     .max = 64,
-     .help = "stops, -64 to 64; 1 is twice as bright;\ndefault: the scene's"},
-    LOOK_OPTIONS(values),
+    ENCODING_OPTIONS(values),
     {.name = "crop",
      .kind = OPTION_RECTANGLE,
      AT(crop),
@@ -84,6 +42,30 @@ static const option options[] = {
      .help = "render and write only this part of the picture, in\n"
              "pixels from its top left corner",
      .also = "region|window"},
+    {.name = "sample-range",
+     .kind = OPTION_RANGE,
+     AT(sample_range),
+     .value = "A-B",
+     .min = 0,
+     .max = 65535,
+     .help = "trace only samples A to B, the first being 0, and\n"
+             "write a part: an EXR file for lavaray merge",
+     .also = "part|range"},
+    {.name = "time",
+     .kind = OPTION_DURATION,
+     AT(time),
+     .value = "TIME",
+     .max = 31536000,
+     .help = "as many samples as fit in 500ms, 60s, 10m, 2h, ..., at\n"
+             "least 1 and at most --spp; for --integrator path",
+     .also = "seconds|limit|timeout"},
+    {.name = "checkpoint",
+     .kind = OPTION_TEXT,
+     AT(checkpoint),
+     .value = "FILE",
+     .help = "keep what is traced in FILE, every 30 seconds and when\n"
+             "interrupted; the same command goes on from there",
+     .also = "resume|continue|save"},
     {.name = "frames",
      .kind = OPTION_TEXT,
      AT(frames),
@@ -92,6 +74,12 @@ static const option options[] = {
              "-o frame-%04d.png; or to standard output, one PPM or\n"
              "PNG behind the other, as video encoders read them",
      .also = "animation|range"},
+    {.name = "denoise",
+     .kind = OPTION_FLAG,
+     AT(denoise),
+     .help = "remove noise with Open Image Denoise, where it is\n"
+             "installed; its bytes may differ between computers",
+     .also = "denoiser|oidn"},
     {.name = "stats",
      .kind = OPTION_TEXT,
      AT(stats),
@@ -125,6 +113,14 @@ static const option options[] = {
      .max = 1 << 30,
      .help = "rays handed to the device at once",
      .for_tests = true},
+    {.name = "checkpoint-seconds",
+     .kind = OPTION_REAL,
+     AT(checkpoint_seconds),
+     .value = "S",
+     .min = 0,
+     .max = 86400,
+     .help = "between two checkpoints, at least",
+     .for_tests = true},
     {.name = "storage-loads",
      .kind = OPTION_FLAG,
      AT(storage_loads),
@@ -132,90 +128,108 @@ static const option options[] = {
      .for_tests = true},
 };
 
-static lr_format format_named(const char *name)
+/* A part has its own format, and is no picture yet. */
+static int check_part(const command *self, const values *v, const lr_encoding *encoding)
 {
-    char path[16];
-    lr_format format = LR_FORMAT_PPM;
-    snprintf(path, sizeof path, ".%s", name);
-    lr_format_from_path(path, &format);
-    return format;
+    if (encoding->format != LR_FORMAT_EXR) {
+        return wrong_usage(self, "--sample-range writes a part, which is an EXR file: -o FILE.exr");
+    }
+    const encoding_values *e = &v->encoding;
+    if (e->half || e->transfer || !isnan(e->exposure) || e->look.tone || e->look.white != 0) {
+        return wrong_usage(self,
+                           "--sample-range writes exact sums: how they become a picture is for "
+                           "lavaray merge to say");
+    }
+    return EXIT_FINE;
+}
+
+/* --frames, and where to. */
+static int check_frames(const command *self, const values *v, const lr_encoding *encoding)
+{
+    const char *output = v->encoding.output;
+    bool to_stdout = strcmp(output, "-") == 0;
+    frame_range range;
+    char path[PATH_MAX];
+    if (!frames_parse(v->frames, &range)) {
+        print_error("--frames must be A-B, such as 0-47, from 0 to %d, not '%.100s'; see lavaray "
+                    "render --help",
+                    FRAME_MAX, v->frames);
+        return EXIT_USAGE;
+    }
+    if (!to_stdout && !frames_named(output)) {
+        return wrong_usage(self, "with --frames the output needs one number: -o frame-%04d.png");
+    }
+    if (v->load.frame) {
+        return wrong_usage(self, "--frame is for a single picture, --frames for several");
+    }
+    if (v->stats) {
+        return wrong_usage(self, "--stats tells of a single picture, not of --frames");
+    }
+    if (v->checkpoint || v->sample_range.given) {
+        return wrong_usage(self, "--checkpoint and --sample-range are for a single picture, not "
+                                 "for --frames");
+    }
+    bool floats = encoding->format == LR_FORMAT_PFM || encoding->format == LR_FORMAT_EXR;
+    if (to_stdout && floats) {
+        return wrong_usage(self, "frames go to standard output as PPM or PNG");
+    }
+    if (!(frames_path(output, range.last, path, sizeof path) &&
+          frames_path(output, range.first, path, sizeof path))) {
+        print_error("%.100s: the path is too long", output);
+        return EXIT_FILE;
+    }
+    return check_writable(path);
+}
+
+/* No file would replace another. */
+static int check_names(const command *self, const values *v, const char *scene)
+{
+    const char *output = v->encoding.output;
+    if (strcmp(output, "-") == 0 && v->stats && strcmp(v->stats, "-") == 0) {
+        return wrong_usage(self, "-o - and --stats - cannot both have standard output");
+    }
+    if (same_file(output, scene) || (v->stats && same_file(v->stats, scene)) ||
+        (v->checkpoint && same_file(v->checkpoint, scene))) {
+        return wrong_usage(self, "the output would replace the scene");
+    }
+    if (v->stats && strcmp(v->stats, output) == 0) {
+        return wrong_usage(self, "the picture and the statistics have the same name");
+    }
+    if (v->checkpoint &&
+        (strcmp(v->checkpoint, output) == 0 || (v->stats && strcmp(v->checkpoint, v->stats) == 0) ||
+         same_file(v->checkpoint, output))) {
+        return wrong_usage(self, "the checkpoint needs a name of its own");
+    }
+    if (v->checkpoint && strcmp(v->checkpoint, "-") == 0) {
+        return wrong_usage(self, "--checkpoint needs a file, not standard output");
+    }
+    return EXIT_FINE;
 }
 
 /* What the flags mean together, and whether the files can be written. */
 static int check_values(const command *self, const values *v, const char *scene,
                         lr_encoding *encoding)
 {
-    if (!v->output) {
-        return wrong_usage(self, "where to? Give -o FILE.png, .ppm, .pfm or .exr");
-    }
-    bool to_stdout = strcmp(v->output, "-") == 0;
-    frame_range range;
-    if (v->frames && !frames_parse(v->frames, &range)) {
-        print_error("--frames must be A-B, such as 0-47, from 0 to %d, not '%.100s'; see lavaray "
-                    "render --help",
-                    FRAME_MAX, v->frames);
-        return EXIT_USAGE;
-    }
-    if (v->frames && !to_stdout && !frames_named(v->output)) {
-        return wrong_usage(self, "with --frames the output needs one number: -o frame-%04d.png");
-    }
-    if (v->frames && v->load.frame) {
-        return wrong_usage(self, "--frame is for a single picture, --frames for several");
-    }
-    if (v->frames && v->stats) {
-        return wrong_usage(self, "--stats tells of a single picture, not of --frames");
-    }
-    encoding->format = LR_FORMAT_PPM;
-    if (v->format) {
-        encoding->format = format_named(v->format);
-    } else if (!to_stdout && !lr_format_from_path(v->output, &encoding->format)) {
-        print_error("%s: the name must end in .ppm, .png, .pfm or .exr; see lavaray render --help",
-                    v->output);
-        return EXIT_USAGE;
-    }
-    if (to_stdout && isatty(STDOUT_FILENO)) {
-        return wrong_usage(self, "-o - is for pipes and files, standard output is a terminal");
-    }
-    if (to_stdout && v->stats && strcmp(v->stats, "-") == 0) {
-        return wrong_usage(self, "-o - and --stats - cannot both have standard output");
-    }
     if (v->quiet && v->verbose) {
         return wrong_usage(self, "-q and -v contradict each other");
     }
-    bool floats = encoding->format == LR_FORMAT_PFM || encoding->format == LR_FORMAT_EXR;
-    if (floats && v->maxval >= 0) {
-        return wrong_usage(self, "--maxval means nothing for PFM and EXR, which hold floats");
+    int code = choose_encoding(self, &v->encoding, encoding);
+    if (code == EXIT_FINE) {
+        code = v->frames ? check_frames(self, v, encoding) : check_writable(v->encoding.output);
     }
-    if (floats && v->transfer && strcmp(v->transfer, "srgb") == 0) {
-        return wrong_usage(self, "--transfer srgb is not for PFM and EXR, which are always linear");
+    if (code == EXIT_FINE && v->denoise && v->sample_range.given) {
+        return wrong_usage(self, "--denoise is for whole pictures, not for --sample-range");
     }
-    if (v->frames && to_stdout && floats) {
-        return wrong_usage(self, "frames go to standard output as PPM or PNG");
+    if (code == EXIT_FINE && v->sample_range.given) {
+        code = check_part(self, v, encoding);
     }
-    if (check_look(self, &v->look, encoding->format) != EXIT_FINE) {
-        return EXIT_USAGE;
+    if (code == EXIT_FINE) {
+        code = check_names(self, v, scene);
     }
-    if (v->half && encoding->format != LR_FORMAT_EXR) {
-        return wrong_usage(self, "--half is for EXR alone");
+    if (code == EXIT_FINE && v->stats) {
+        code = check_writable(v->stats);
     }
-    if (encoding->format == LR_FORMAT_PNG && v->maxval >= 0 && v->maxval != 255 &&
-        v->maxval != 65535) {
-        return wrong_usage(self, "--maxval must be 255 or 65535 for PNG");
-    }
-    if (same_file(v->output, scene) || (v->stats && same_file(v->stats, scene))) {
-        return wrong_usage(self, "the output would replace the scene");
-    }
-    if (v->stats && strcmp(v->stats, v->output) == 0) {
-        return wrong_usage(self, "the picture and the statistics have the same name");
-    }
-    char path[PATH_MAX];
-    if (v->frames && !(frames_path(v->output, range.last, path, sizeof path) &&
-                       frames_path(v->output, range.first, path, sizeof path))) {
-        print_error("%.100s: the path is too long", v->output);
-        return EXIT_FILE;
-    }
-    int code = check_writable(v->frames ? path : v->output);
-    return code == EXIT_FINE && v->stats ? check_writable(v->stats) : code;
+    return code == EXIT_FINE && v->checkpoint ? check_writable(v->checkpoint) : code;
 }
 
 static lr_render_options make_options(const values *v, progress *p)
@@ -225,6 +239,13 @@ static lr_render_options make_options(const values *v, progress *p)
     made.crop.y = v->crop.y;
     made.crop.width = v->crop.width;
     made.crop.height = v->crop.height;
+    if (v->sample_range.given) {
+        made.sample_range.first = v->sample_range.first;
+        made.sample_range.count = v->sample_range.last - v->sample_range.first + 1;
+    }
+    made.seconds = v->time;
+    made.checkpoint = v->checkpoint;
+    made.checkpoint_seconds = v->checkpoint_seconds;
     made.tile_size = (uint32_t)v->tile;
     made.chunk_rays = (uint32_t)v->chunk;
     made.storage_loads = v->storage_loads;
@@ -233,9 +254,15 @@ static lr_render_options make_options(const values *v, progress *p)
     return made;
 }
 
-static int say_interrupted(const values *v)
+/* problem: why the checkpoint could not be written, ""; NULL: nothing has been traced yet. */
+static int say_interrupted(const values *v, const char *problem)
 {
-    if (v->frames) {
+    if (problem && problem[0]) {
+        print_error("interrupted, and the checkpoint could not be written: %s", problem);
+    } else if (problem && v->checkpoint && access(v->checkpoint, F_OK) == 0) {
+        print_error("interrupted; %s holds what has been traced, the same command goes on from it",
+                    v->checkpoint);
+    } else if (v->frames) {
         print_error("interrupted in frame %d, which is not written", (int)v->load.frame);
     } else {
         print_error("interrupted, nothing written");
@@ -243,64 +270,53 @@ static int say_interrupted(const values *v)
     return EXIT_INTERRUPTED;
 }
 
-/* "640x480, 4 samples, depth 6, seed 0" and what else the pixels depend on, as the picture's file
- * says it. */
-static void describe_settings(const values *v, const lr_encoding *encoding,
-                              const render_record *record, char *text, size_t size)
+/* Writes the picture, unless it is a part, which is written already. */
+static int write_result(const values *v, const lr_encoding *encoding, const lr_picture *picture,
+                        render_record *record)
 {
-    const lr_render_stats *s = &record->stats;
-    FILE *out = fmemopen(text, size, "w");
-    if (!out) {
-        text[0] = '\0';
-        return;
-    }
-    fprintf(out, "%s%ux%u, %u sample%s, depth %u, seed %u",
-            s->integrator == LR_INTEGRATOR_PATH ? "paths, " : "", (unsigned)s->width,
-            (unsigned)s->height, (unsigned)s->samples, s->samples == 1 ? "" : "s",
-            (unsigned)s->depth, (unsigned)s->seed);
-    if (v->crop.width) {
-        fprintf(out, ", crop %u,%u,%u,%u", (unsigned)v->crop.x, (unsigned)v->crop.y,
-                (unsigned)v->crop.width, (unsigned)v->crop.height);
-    }
-    if (v->picture.camera) {
-        fprintf(out, ", camera %.200s", v->picture.camera);
-    }
-    if (v->picture.filter) {
-        fprintf(out, ", filter %s", v->picture.filter);
-    }
+    double start = seconds_now();
+    char frame[32] = "", denoised[200] = "", settings[LR_SETTINGS_TEXT + 240];
     if (v->load.frame) {
-        fprintf(out, ", frame %d", (int)v->load.frame);
+        snprintf(frame, sizeof frame, ", frame %d", (int)v->load.frame);
     }
-    if (encoding->exposure != 0) {
-        fprintf(out, ", exposure %.7g", (double)encoding->exposure);
-    }
-    describe_look(encoding, out);
     if (record->denoiser) {
-        fprintf(out, ", denoised by %s", record->denoiser);
+        snprintf(denoised, sizeof denoised, ", denoised by %.150s", record->denoiser);
     }
-    if (encoding->format == LR_FORMAT_PNG && encoding->transfer == LR_TRANSFER_LINEAR) {
-        fputs(", linear", out);
+    snprintf(settings, sizeof settings, "%s%s%s", record->stats.settings, frame, denoised);
+    const char *hash = record->denoiser ? record->denoised_hash : record->stats.hash;
+    int code = v->sample_range.given ? EXIT_FINE
+                                     : write_picture(picture, v->encoding.output, *encoding,
+                                                     record->scene_hash, settings, hash);
+    if (code == EXIT_FINE && v->checkpoint) {
+        unlink(v->checkpoint); /* it may never have been written */
     }
-    fclose(out);
+    record->width = v->crop.width ? v->crop.width : record->stats.width;
+    record->height = v->crop.height ? v->crop.height : record->stats.height;
+    record->write_seconds = seconds_now() - start;
+    return code;
 }
 
 /* Traces and writes; fills what record does not hold yet. */
 static int trace_and_write(const values *v, lr_device *device, lr_denoiser *denoiser,
-                           const lr_scene *scene, lr_encoding encoding, progress *p, double start,
-                           render_record *record)
+                           const lr_scene *scene, const lr_encoding *encoding, progress *p,
+                           double start, render_record *record)
 {
     lr_error error = {0};
     lr_picture picture = {0};
-    lr_render_options render_options = make_options(v, p);
+    lr_render_options wanted = make_options(v, p);
     progress_phase(p, "building and compiling");
-    lr_status status = lr_render(device, scene, &render_options, &picture, &record->stats, &error);
+    lr_status status =
+        v->sample_range.given
+            ? lr_render_part(device, scene, &wanted, v->encoding.output, &record->stats, &error)
+            : lr_render(device, scene, &wanted, &picture, &record->stats, &error);
     if (status == LR_OK) {
         status = denoise_picture(denoiser, &picture, p, record, &error);
     }
     progress_clear(p);
     int code;
-    if (status == LR_ERROR_INTERRUPTED || (status == LR_OK && interrupted())) {
-        code = say_interrupted(v);
+    if (status == LR_ERROR_INTERRUPTED ||
+        (status == LR_OK && interrupted() && !v->sample_range.given)) {
+        code = say_interrupted(v, record->stats.checkpoint_problem);
         goto done;
     }
     if (status != LR_OK) {
@@ -310,29 +326,12 @@ static int trace_and_write(const values *v, lr_device *device, lr_denoiser *deno
     }
     /* Before the picture is written: one that a driver complained about is not worth keeping. */
     code = check_validation(device, EXIT_FINE);
+    if (code == EXIT_FINE) {
+        code = write_result(v, encoding, &picture, record);
+    }
     if (code != EXIT_FINE) {
         goto done;
     }
-    char settings[512];
-    describe_settings(v, &encoding, record, settings, sizeof settings);
-    const lr_text texts[] = {
-        {LR_STAMP_SOFTWARE, "lavaray " LR_VERSION},
-        {LR_STAMP_SCENE, record->scene_hash},
-        {LR_STAMP_SETTINGS, settings},
-        {LR_STAMP_PIXELS, record->denoiser ? record->denoised_hash : record->stats.hash},
-    };
-    encoding.texts = texts;
-    encoding.text_count = sizeof texts / sizeof *texts;
-    double write_start = seconds_now();
-    status = lr_picture_write(&picture, v->output, &encoding, &error);
-    if (status != LR_OK) {
-        error.status = status;
-        code = report_failure(&error);
-        goto done;
-    }
-    record->width = picture.width;
-    record->height = picture.height;
-    record->write_seconds = seconds_now() - write_start;
     record->total_seconds = seconds_now() - start;
     print_record_warnings(record);
     if (v->verbose) {
@@ -360,7 +359,7 @@ typedef struct job {
 static int open_device(job *j)
 {
     lr_error error = {0};
-    if (j->v.look.denoise && lr_denoiser_open(&j->denoiser, &error)) {
+    if (j->v.denoise && lr_denoiser_open(&j->denoiser, &error)) {
         progress_clear(&j->progress);
         return report_failure(&error);
     }
@@ -383,7 +382,8 @@ static int render_picture(job *j, double start, lr_scene **scene)
 {
     const values *v = &j->v;
     progress_phase(&j->progress, "reading scene");
-    render_record record = {.scene = j->path, .output = v->output, .camera = v->picture.camera};
+    render_record record = {
+        .scene = j->path, .output = v->encoding.output, .camera = v->picture.camera};
     lr_scene_info scene_info;
     lr_scene *previous = *scene;
     load_values load = v->load;
@@ -397,7 +397,7 @@ static int render_picture(job *j, double start, lr_scene **scene)
     }
     if (interrupted()) {
         progress_clear(&j->progress);
-        return say_interrupted(v);
+        return say_interrupted(v, NULL);
     }
     lr_scene_get_info(*scene, &scene_info);
     if (v->frames && !previous && !scene_info.moves && !v->quiet) {
@@ -405,10 +405,10 @@ static int render_picture(job *j, double start, lr_scene **scene)
         print_warning("nothing in %s has keys: all frames are the same", j->path);
     }
     record.scene_hash = scene_info.sha256;
-    record.exposure = isnan(v->exposure) ? (double)scene_info.exposure : v->exposure;
     lr_encoding encoding = j->encoding;
-    encoding.exposure = (float)record.exposure;
-    choose_look(&v->look, &scene_info, &encoding);
+    finish_encoding(&v->encoding, &scene_info, &encoding);
+    record.exposure =
+        isnan(v->encoding.exposure) ? (double)scene_info.exposure : v->encoding.exposure;
     record.tone = lr_tone_name(encoding.tone);
     record.white = encoding.white;
     code = j->device ? EXIT_FINE : open_device(j);
@@ -418,7 +418,7 @@ static int render_picture(job *j, double start, lr_scene **scene)
     record.device_seconds = j->device_seconds;
     record.device = *lr_device_get_info(j->device);
     record.exact = lr_device_is_exact(j->device);
-    return trace_and_write(v, j->device, j->denoiser, *scene, encoding, &j->progress, start,
+    return trace_and_write(v, j->device, j->denoiser, *scene, &encoding, &j->progress, start,
                            &record);
 }
 
@@ -426,7 +426,7 @@ static int render_frames(job *j, lr_scene **scene)
 {
     frame_range range;
     char path[PATH_MAX];
-    const char *pattern = j->v.output;
+    const char *pattern = j->v.encoding.output;
     bool to_stdout = strcmp(pattern, "-") == 0;
     int code = EXIT_FINE;
     frames_parse(j->v.frames, &range);
@@ -434,10 +434,10 @@ static int render_frames(job *j, lr_scene **scene)
         j->v.load.frame = frame;
         if (!to_stdout) {
             frames_path(pattern, frame, path, sizeof path);
-            j->v.output = path;
+            j->v.encoding.output = path;
         }
-        if (same_file(j->v.output, j->path)) {
-            print_error("%s: the output would replace the scene", j->v.output);
+        if (same_file(j->v.encoding.output, j->path)) {
+            print_error("%s: the output would replace the scene", j->v.encoding.output);
             return EXIT_USAGE;
         }
         code = render_picture(j, seconds_now(), scene);
@@ -448,7 +448,7 @@ static int render_frames(job *j, lr_scene **scene)
 static int run(const command *self, int argc, char **argv)
 {
     double start = seconds_now();
-    job j = {.v = {.picture = PICTURE_DEFAULTS, .maxval = -1, .exposure = NAN}};
+    job j = {.v = {.picture = PICTURE_DEFAULTS, .encoding = ENCODING_DEFAULTS}};
     const values *v = &j.v;
     int operands;
     parse_result parsed = options_parse(self, argc, argv, &j.v, &operands);
@@ -463,10 +463,6 @@ static int run(const command *self, int argc, char **argv)
     if (v->frames && strcmp(j.path, "-") == 0) {
         return wrong_usage(self, "--frames reads the scene once a frame: give a file, not -");
     }
-    j.encoding.maxval = v->maxval >= 0 ? (uint32_t)v->maxval : 0;
-    j.encoding.transfer =
-        v->transfer && strcmp(v->transfer, "linear") == 0 ? LR_TRANSFER_LINEAR : LR_TRANSFER_SRGB;
-    j.encoding.half = v->half;
     catch_interrupts();
     progress_start(&j.progress, v->quiet);
     lr_scene *scene = NULL;
@@ -483,11 +479,12 @@ const command command_render = {
     .summary = "render a scene to a picture",
     .details = "Renders SCENE and writes the picture. SCENE is YAML or JSON (\"-\" is standard\n"
                "input), or a .gltf, .glb, .obj, .ply, .stl or .nff file. The picture depends on\n"
-               "the scene and the flags alone, not on the device. Nothing is written when the\n"
-               "render fails or is interrupted.",
+               "the scene and the flags alone, not on the device. When the render fails or is\n"
+               "interrupted nothing is written but the checkpoint.",
     .examples = "  lavaray render scenes/showcase.yaml -o showcase.png\n"
                 "  lavaray render room.yaml -o room.exr --size 1920x1080 --spp 64 --device gpu\n"
                 "  lavaray render room.yaml -o - | pnmtopng > room.png\n"
+                "  lavaray render room.yaml -o a.exr --spp 64 --sample-range 0-31\n"
                 "  lavaray render turn.yaml --frames 0-47 -o turn-%04d.png",
     .options = options,
     .option_count = sizeof options / sizeof *options,

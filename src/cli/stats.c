@@ -35,12 +35,26 @@ static const char *output_name(const render_record *r)
     return strcmp(r->output, "-") == 0 ? "standard output" : r->output;
 }
 
+/* Such as "4 samples"; "samples 0-15 of 64" or "sample 5 of 64" for a part. */
+static void format_samples(const lr_render_stats *s, char text[64])
+{
+    if (s->sample_count < s->samples && s->sample_count == 1) {
+        snprintf(text, 64, "sample %u of %u", (unsigned)s->first_sample, (unsigned)s->samples);
+    } else if (s->sample_count < s->samples) {
+        snprintf(text, 64, "samples %u-%u of %u", (unsigned)s->first_sample,
+                 (unsigned)(s->first_sample + s->sample_count - 1), (unsigned)s->samples);
+    } else {
+        snprintf(text, 64, "%u sample%s", (unsigned)s->samples, s->samples == 1 ? "" : "s");
+    }
+}
+
 void print_record_line(const render_record *r)
 {
-    fprintf(stderr, "wrote %s, %u×%u, %u sample%s, %.1f Mray/s on %s, %.1f s\n", output_name(r),
-            (unsigned)r->width, (unsigned)r->height, (unsigned)r->stats.samples,
-            r->stats.samples == 1 ? "" : "s", 1e-6 * rays_per_second(&r->stats), r->device.name,
-            r->total_seconds);
+    char samples[64];
+    format_samples(&r->stats, samples);
+    fprintf(stderr, "wrote %s, %u×%u, %s, %.1f Mray/s on %s, %.1f s\n", output_name(r),
+            (unsigned)r->width, (unsigned)r->height, samples, 1e-6 * rays_per_second(&r->stats),
+            r->device.name, r->total_seconds);
 }
 
 static void print_rays(const char *name, uint64_t traced, uint64_t hit)
@@ -61,16 +75,17 @@ static void print_count(const char *name, uint64_t count)
 void print_record(const render_record *r)
 {
     const lr_render_stats *s = &r->stats;
+    char samples[64];
+    format_samples(s, samples);
     fprintf(stderr,
-            "wrote %s, %u×%u of %u×%u, %u sample%s, depth %u, seed %u\n"
+            "wrote %s, %u×%u of %u×%u, %s, depth %u, seed %u\n"
             "device   %s\n         %s, Vulkan %s, %s, %s\n"
             "hash     %s\n"
             "rays\n",
             output_name(r), (unsigned)r->width, (unsigned)r->height, (unsigned)s->width,
-            (unsigned)s->height, (unsigned)s->samples, s->samples == 1 ? "" : "s",
-            (unsigned)s->depth, (unsigned)s->seed, r->device.name, r->device.driver,
-            format_version(r->device.api_version).text, r->device.software ? "software" : "GPU",
-            r->exact ? "exact" : "not exact", s->hash);
+            (unsigned)s->height, samples, (unsigned)s->depth, (unsigned)s->seed, r->device.name,
+            r->device.driver, format_version(r->device.api_version).text,
+            r->device.software ? "software" : "GPU", r->exact ? "exact" : "not exact", s->hash);
     print_rays("primary", s->primary.traced, s->primary.hit);
     print_rays("reflected", s->reflected.traced, s->reflected.hit);
     print_rays("refracted", s->refracted.traced, s->refracted.hit);
@@ -78,6 +93,10 @@ void print_record(const render_record *r)
     print_rays("shadow", s->shadow.traced, s->shadow.hit);
     fprintf(stderr, "  %-11s %14" PRIu64 "  %.2f Mray/s\n", "all", rays_traced(s),
             1e-6 * rays_per_second(s));
+    if (s->resumed > 0) {
+        fprintf(stderr, "  %.1f %% of the samples are from the checkpoint, without their rays\n",
+                100 * s->resumed);
+    }
     print_count("hidden surfaces passed", s->passed);
     print_count("not traced: depth", s->dropped_depth);
     print_count("not traced: weight", s->dropped_weight);
@@ -110,6 +129,9 @@ void print_record_warnings(const render_record *r)
         print_warning("%" PRIu64 " contributions were brighter than the film holds and were "
                       "clipped",
                       s->saturated);
+    }
+    if (s->checkpoint_problem[0]) {
+        print_warning("the checkpoint could not be written: %s", s->checkpoint_problem);
     }
     if (s->dropped_nesting) {
         print_warning("%" PRIu64 " times more transparent objects were inside each other than are "
@@ -147,6 +169,11 @@ static json_t *record_json(const render_record *r)
                             json_pack("{s:s, s:s, s:f}", "by", r->denoiser, "sha256",
                                       r->denoised_hash, "seconds", r->denoise_seconds));
     }
+    if (s->sample_count < s->samples) {
+        json_object_set_new(picture, "sample_range",
+                            json_pack("[I,I]", (json_int_t)s->first_sample,
+                                      (json_int_t)s->first_sample + s->sample_count - 1));
+    }
     json_t *rays = json_pack(
         "{s:o, s:o, s:o, s:o, s:o, s:I}", "primary", rays_json(s->primary.traced, s->primary.hit),
         "reflected", rays_json(s->reflected.traced, s->reflected.hit), "refracted",
@@ -165,6 +192,7 @@ static json_t *record_json(const render_record *r)
         r->parse_seconds, "build", s->build_seconds, "upload", s->upload_seconds, "compile",
         s->compile_seconds, "trace", s->trace_seconds, "read_back", s->read_back_seconds, "write",
         r->write_seconds, "total", r->total_seconds, "longest_pass", s->longest_pass_seconds);
+    json_object_set_new(rays, "resumed", json_real(s->resumed));
     return json_pack(
         "{s:s, s:o*, s:o*, s:o*, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:f, s:o, s:o, s:I}", "version",
         LR_VERSION, "scene", scene, "output", output, "camera", camera, "device", device, "picture",

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "image/words.h"
 
 typedef struct exr_input {
     const image_file *file;
@@ -15,7 +16,9 @@ typedef struct exr_input {
     exr_context_t context;
     exr_storage_t storage;
     exr_attr_box2i_t data, display; /* windows; the last pixel is inside */
-    int32_t channels[4];            /* where each of the picture's is in the file's list */
+    const char *const *words;       /* NULL, or the channels to read as they are */
+    uint32_t word_count;
+    int32_t channels[LR_WORDS_MAX]; /* where each of the picture's is in the file's list */
     bool truncated;                 /* the last read went past the end */
     char reason[200];               /* the library's, the first one */
 } exr_input;
@@ -112,13 +115,28 @@ static uint32_t find_layer(exr_input *exr, const exr_attr_chlist_t *list, const 
     return 0;
 }
 
+/* Finds the channels of whole numbers that are wanted; returns their number, 0 when one is not
+ * there. */
+static uint32_t find_words(exr_input *exr, const exr_attr_chlist_t *list)
+{
+    for (uint32_t i = 0; i < exr->word_count; i++) {
+        int32_t channel = find_channel(list, "", 0, exr->words[i]);
+        if (channel < 0 || list->entries[channel].pixel_type != EXR_PIXEL_UINT)
+            return 0;
+        exr->channels[i] = channel;
+    }
+    return exr->word_count;
+}
+
 static lr_status choose_channels(exr_input *exr, uint32_t *count)
 {
     const exr_attr_chlist_t *list;
     exr_result_t code = exr_get_channels(exr->context, 0, &list);
     if (code != EXR_ERR_SUCCESS)
         return say_failure(exr, code, "within the header");
-    *count = find_layer(exr, list, "", 0);
+    *count = exr->words ? find_words(exr, list) : find_layer(exr, list, "", 0);
+    if (exr->words && *count == 0)
+        return refuse(exr, "holds no sums of a render: these channels are not in it");
     for (int32_t i = 0; i < list->num_channels && *count == 0; i++) {
         const char *name = list->entries[i].name.str, *dot = strrchr(name, '.');
         if (dot)
@@ -241,8 +259,8 @@ static float half_value(uint16_t half)
     return value;
 }
 
-/* Of a file's little-endian bytes. */
-static float sample_value(const uint8_t *bytes, uint16_t type)
+/* Of a file's little-endian bytes; a word keeps its bits. */
+static float sample_value(const uint8_t *bytes, uint16_t type, bool word)
 {
     uint32_t bits = (uint32_t)(bytes[0] | bytes[1] << 8);
     if (type == EXR_PIXEL_HALF)
@@ -250,13 +268,14 @@ static float sample_value(const uint8_t *bytes, uint16_t type)
     bits |= (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
     float value;
     memcpy(&value, &bits, sizeof value);
-    return type == EXR_PIXEL_UINT ? (float)bits : value;
+    return type == EXR_PIXEL_UINT && !word ? (float)bits : value;
 }
 
 /* Takes the channels that have a destination, in place of the library's own functions: those of
  * OpenEXRCore 3.1 for halves write to channels without one and take subsampled ones for full. */
 static exr_result_t unpack(exr_decode_pipeline_t *decoder)
 {
+    const exr_input *exr = decoder->decoding_user_data;
     const exr_chunk_info_t *chunk = &decoder->chunk;
     const uint8_t *in = decoder->unpacked_buffer;
     uint64_t left = chunk->unpacked_size;
@@ -273,7 +292,7 @@ static exr_result_t unpack(exr_decode_pipeline_t *decoder)
                 out += (size_t)y * (size_t)c->user_line_stride / sizeof *out;
             for (size_t x = 0; out && x < width; x++)
                 out[x * (size_t)c->user_pixel_stride / sizeof *out] =
-                    sample_value(in + x * bytes, c->data_type);
+                    sample_value(in + x * bytes, c->data_type, exr->words);
             in += width * bytes;
             left -= width * bytes;
         }
@@ -297,6 +316,7 @@ static exr_result_t decode_chunk(const exr_input *exr, const exr_chunk_info_t *c
         code = exr_decoding_choose_default_routines(exr->context, 0, &decoder);
         if (decoder.unpack_and_convert_fn) /* otherwise the chunk is read into its place */
             decoder.unpack_and_convert_fn = unpack;
+        decoder.decoding_user_data = (void *)exr;
     }
     if (code == EXR_ERR_SUCCESS)
         code = exr_decoding_run(exr->context, 0, &decoder);
@@ -381,25 +401,46 @@ static lr_status read_tiles(const exr_input *exr)
     return status;
 }
 
-lr_status image_read_exr(const image_file *file, lr_image *image, lr_error *error)
+static lr_status read_file(exr_input *exr)
 {
-    exr_input exr = {.file = file, .image = image, .error = error};
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
     setup.error_handler_fn = on_error;
     setup.alloc_fn = allocate;
     setup.free_fn = free;
-    setup.user_data = &exr;
+    setup.user_data = exr;
     setup.read_fn = on_read;
     setup.size_fn = on_size;
     setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-    exr_result_t code = exr_start_read(&exr.context, "EXR", &setup);
+    exr_result_t code = exr_start_read(&exr->context, "EXR", &setup);
     if (code != EXR_ERR_SUCCESS)
-        return say_failure(&exr, code, "within the header");
-    lr_status status = read_header(&exr);
+        return say_failure(exr, code, "within the header");
+    lr_status status = read_header(exr);
     if (status == LR_OK)
-        status = image_allocate(file, image, error);
+        status = image_allocate(exr->file, exr->image, exr->error);
     if (status == LR_OK)
-        status = exr.storage == EXR_STORAGE_TILED ? read_tiles(&exr) : read_scanlines(&exr);
-    exr_finish(&exr.context);
+        status = exr->storage == EXR_STORAGE_TILED ? read_tiles(exr) : read_scanlines(exr);
+    exr_finish(&exr->context);
+    return status;
+}
+
+lr_status image_read_exr(const image_file *file, lr_image *image, lr_error *error)
+{
+    exr_input exr = {.file = file, .image = image, .error = error};
+    return read_file(&exr);
+}
+
+lr_status lr_words_decode(const unsigned char *bytes, size_t size, const char *name,
+                          const char *const *names, uint32_t count, lr_image *image,
+                          lr_error *error)
+{
+    const image_file file = {bytes, size, name};
+    exr_input exr = {
+        .file = &file, .image = image, .error = error, .words = names, .word_count = count};
+    *image = (lr_image){0};
+    if (size < 4 || memcmp(bytes, "\x76\x2f\x31\x01", 4) != 0)
+        return refuse(&exr, "holds no sums of a render: it is no EXR file");
+    lr_status status = read_file(&exr);
+    if (status)
+        lr_image_free(image);
     return status;
 }

@@ -24,3 +24,18 @@ void lr_film_resolve(const uint32_t *film, uint32_t pixels, float *out)
                 *out++ = lr_film_mean(sum, samples);
         }
 }
+
+void lr_film_add(uint32_t *pixel, const uint32_t *other)
+{
+    for (uint32_t channel = 0; channel < 3; channel++) {
+        uint64_t a = pixel[2 * channel] | (uint64_t)pixel[2 * channel + 1] << 32;
+        uint64_t b = other[2 * channel] | (uint64_t)other[2 * channel + 1] << 32;
+        uint64_t sum = a + b;
+        pixel[2 * channel] = (uint32_t)sum;
+        pixel[2 * channel + 1] = (uint32_t)(sum >> 32);
+        if (sum < a)
+            pixel[LR_FILM_FLAGS] |= 1u << channel;
+    }
+    pixel[LR_FILM_FLAGS] |= other[LR_FILM_FLAGS];
+    pixel[LR_FILM_SAMPLES] += other[LR_FILM_SAMPLES];
+}

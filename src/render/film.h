@@ -17,4 +17,8 @@ float lr_film_overflow(uint32_t samples);
  * there is no sample yet. */
 void lr_film_resolve(const uint32_t *film, uint32_t pixels, float *out);
 
+/* Adds the sums, flags and samples of one pixel to another's. The order of additions changes
+ * nothing that lr_film_resolve tells. */
+void lr_film_add(uint32_t *pixel, const uint32_t *other);
+
 #endif

@@ -21,6 +21,7 @@ typedef enum lr_inspect {
 typedef struct lr_settings {
     uint32_t width, height, samples, depth, seed;
     uint32_t crop_x, crop_y, crop_width, crop_height;
+    uint32_t first_sample, sample_count; /* of the samples: which are traced */
     const lr_camera *camera;
     lr_integrator integrator;
     lr_filter filter;
@@ -72,6 +73,9 @@ void lr_pack_environment_choice(lr_packed_scene *packed, double picture, double 
 
 /* pack_objects.c: the primitives, objects and media of the scene. */
 lr_status lr_pack_objects(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);
+
+/* pack_bsdf.c: the materials once more, for paths. */
+lr_status lr_pack_bsdfs(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);
 
 /* pack_textures.c: first makes room for the records of the scene's textures, texture i in row i
  * and behind them the sky's, and last fills them and appends their texels. */

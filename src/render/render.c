@@ -3,17 +3,72 @@
 
 #include "base/memory.h"
 #include "render/film.h"
+#include "render/gather.h"
 #include "render/settings.h"
 #include "render/wavefront.h"
 
-static void resolve(const uint32_t *film, const lr_tile *tile, const lr_settings *settings,
-                    lr_picture *picture)
+/* What a render works with, made ready. */
+typedef struct job {
+    const lr_render_options *options;
+    lr_settings settings;
+    lr_packed_scene packed;
+    lr_wavefront *wavefront;
+    double begun; /* lr_now() */
+} job;
+
+static lr_status start(job *j, lr_device *device, const lr_scene *scene,
+                       const lr_render_options *options, lr_render_stats *stats, lr_error *error)
 {
-    for (uint32_t y = 0; y < tile->height; y++) {
-        size_t row = (tile->y - settings->crop_y + y) * (size_t)picture->width;
-        lr_film_resolve(&film[(size_t)y * tile->width * LR_FILM_WORDS], tile->width,
-                        &picture->pixels[3 * (row + tile->x - settings->crop_x)]);
-    }
+    static const lr_render_options defaults;
+    *j = (job){.options = options ? options : &defaults, .begun = lr_now()};
+    *stats = (lr_render_stats){.device_seconds = device->open_seconds};
+    lr_status status = lr_settle(scene, j->options, &j->settings, error);
+    double cpu_begun = lr_cpu_now();
+    if (!status)
+        status = lr_pack_scene(scene, &j->settings, &j->packed, error);
+    stats->build_seconds = lr_now() - j->begun;
+    stats->build_cpu_seconds = lr_cpu_now() - cpu_begun;
+    if (status)
+        return status;
+    j->wavefront = lr_alloc(1, sizeof *j->wavefront);
+    if (!j->wavefront)
+        return lr_fail(error, LR_ERROR_MEMORY, "out of memory");
+    return lr_wavefront_create(device, &j->packed, j->options, stats, j->wavefront, error);
+}
+
+static void finish(job *j)
+{
+    if (j->wavefront)
+        lr_wavefront_destroy(j->wavefront);
+    free(j->wavefront);
+    lr_packed_scene_free(&j->packed);
+}
+
+/* What is known once the picture is there. */
+static void complete_stats(const job *j, const lr_picture *picture, lr_render_stats *stats)
+{
+    stats->width = j->settings.width;
+    stats->height = j->settings.height;
+    stats->samples = j->settings.samples;
+    stats->first_sample = j->settings.first_sample;
+    stats->sample_count = j->settings.sample_count;
+    stats->depth = j->settings.depth;
+    stats->seed = j->settings.seed;
+    stats->integrator = j->settings.integrator;
+    lr_settings_describe(&j->settings, j->options, stats->settings, sizeof stats->settings);
+    lr_picture_hash(picture, stats->hash);
+}
+
+static lr_status make_picture(const job *j, lr_picture *picture, lr_error *error)
+{
+    picture->width = j->settings.crop_width;
+    picture->height = j->settings.crop_height;
+    picture->pixels = lr_alloc((size_t)picture->width * picture->height, 3 * sizeof(float));
+    if (!picture->pixels)
+        return lr_fail(error, LR_ERROR_MEMORY,
+                       "not enough memory for %ux%u pixels; try a smaller --size", picture->width,
+                       picture->height);
+    return LR_OK;
 }
 
 typedef struct tile_progress {
@@ -29,22 +84,38 @@ static bool report_progress(void *user, double tile_fraction)
     return p->options->progress(p->options->user, (p->done + tile_fraction) / p->total);
 }
 
-static lr_status render_tiles(lr_wavefront *wavefront, const lr_settings *settings,
-                              const lr_render_options *options, lr_picture *picture,
-                              lr_error *error)
+static void resolve(const uint32_t *film, const lr_tile *tile, const lr_settings *settings,
+                    lr_picture *picture)
 {
-    uint32_t size = wavefront->tile_size;
+    for (uint32_t y = 0; y < tile->height; y++) {
+        size_t row = (tile->y - settings->crop_y + y) * (size_t)picture->width;
+        lr_film_resolve(&film[(size_t)y * tile->width * LR_FILM_WORDS], tile->width,
+                        &picture->pixels[3 * (row + tile->x - settings->crop_x)]);
+    }
+}
+
+/* Every tile with all of its samples, so that no sums but a tile's are ever kept. */
+static lr_status render_tiles(const job *j, lr_picture *picture, lr_error *error)
+{
+    const lr_settings *settings = &j->settings;
+    uint32_t size = j->wavefront->tile_size;
     uint32_t across = (settings->crop_width + size - 1) / size;
     uint32_t down = (settings->crop_height + size - 1) / size;
-    tile_progress progress = {options, 0, (double)across * down};
+    tile_progress progress = {j->options, 0, (double)across * down};
     lr_status status = LR_OK;
     for (uint32_t i = 0; i < across * down && !status; i++) {
         uint32_t x = i % across * size, y = i / across * size;
         uint32_t right = settings->crop_width - x, below = settings->crop_height - y;
-        lr_tile tile = {settings->crop_x + x, settings->crop_y + y, right < size ? right : size,
-                        below < size ? below : size};
+        lr_tile tile = {
+            .x = settings->crop_x + x,
+            .y = settings->crop_y + y,
+            .width = right < size ? right : size,
+            .height = below < size ? below : size,
+            .first_sample = settings->first_sample,
+            .samples = settings->sample_count,
+        };
         const uint32_t *film;
-        status = lr_wavefront_render(wavefront, &tile, report_progress, &progress, &film, error);
+        status = lr_wavefront_render(j->wavefront, &tile, report_progress, &progress, &film, error);
         if (!status)
             resolve(film, &tile, settings, picture);
         progress.done++;
@@ -52,52 +123,69 @@ static lr_status render_tiles(lr_wavefront *wavefront, const lr_settings *settin
     return status;
 }
 
+/* The same over the sums of the whole picture, which are left in *sums. */
+static lr_status render_sums(job *j, const lr_scene *scene, lr_sums *sums, lr_picture *picture,
+                             lr_error *error)
+{
+    lr_status status = lr_sums_create(sums, scene, &j->settings, j->options, error);
+    if (!status)
+        status = lr_gather(j->wavefront, &j->settings, j->options, sums, j->begun, error);
+    if (!status && j->options->seconds > 0)
+        j->settings.samples = j->settings.sample_count = sums->count;
+    if (!status)
+        lr_sums_resolve(sums, picture->pixels);
+    return status;
+}
+
+/* Whether a render goes over the picture more than once. */
+static bool needs_sums(const lr_render_options *options)
+{
+    return options->checkpoint || options->seconds > 0;
+}
+
 lr_status lr_render(lr_device *device, const lr_scene *scene, const lr_render_options *options,
                     lr_picture *picture, lr_render_stats *stats, lr_error *error)
 {
-    static const lr_render_options defaults;
     lr_render_stats own_stats;
-    lr_settings settings;
-    lr_packed_scene packed = {0};
-    lr_wavefront *wavefront = NULL;
-    options = options ? options : &defaults;
+    lr_sums sums = {0};
+    job j;
     stats = stats ? stats : &own_stats;
-    *stats = (lr_render_stats){.device_seconds = device->open_seconds};
     *picture = (lr_picture){0};
-    lr_status status = lr_settle(scene, options, &settings, error);
-    double start = lr_now(), cpu_start = lr_cpu_now();
+    lr_status status = start(&j, device, scene, options, stats, error);
     if (!status)
-        status = lr_pack_scene(scene, &settings, &packed, error);
-    stats->build_seconds = lr_now() - start;
-    stats->build_cpu_seconds = lr_cpu_now() - cpu_start;
-    if (!status) {
-        picture->width = settings.crop_width;
-        picture->height = settings.crop_height;
-        picture->pixels = lr_alloc((size_t)picture->width * picture->height, 3 * sizeof(float));
-        wavefront = lr_alloc(1, sizeof *wavefront);
-        if (!picture->pixels || !wavefront)
-            status = lr_fail(error, LR_ERROR_MEMORY,
-                             "not enough memory for %ux%u pixels; try a smaller --size",
-                             picture->width, picture->height);
-    }
+        status = make_picture(&j, picture, error);
+    if (!status && needs_sums(j.options))
+        status = render_sums(&j, scene, &sums, picture, error);
+    else if (!status)
+        status = render_tiles(&j, picture, error);
     if (!status)
-        status = lr_wavefront_create(device, &packed, options, stats, wavefront, error);
-    if (!status)
-        status = render_tiles(wavefront, &settings, options, picture, error);
-    if (!status) {
-        stats->width = settings.width;
-        stats->height = settings.height;
-        stats->samples = settings.samples;
-        stats->depth = settings.depth;
-        stats->seed = settings.seed;
-        stats->integrator = settings.integrator;
-        lr_picture_hash(picture, stats->hash);
-    } else {
+        complete_stats(&j, picture, stats);
+    else
         lr_picture_free(picture);
-    }
-    if (wavefront)
-        lr_wavefront_destroy(wavefront);
-    free(wavefront);
-    lr_packed_scene_free(&packed);
+    lr_sums_free(&sums);
+    finish(&j);
+    return status;
+}
+
+lr_status lr_render_part(lr_device *device, const lr_scene *scene, const lr_render_options *options,
+                         const char *path, lr_render_stats *stats, lr_error *error)
+{
+    lr_render_stats own_stats;
+    lr_picture picture = {0};
+    lr_sums sums = {0};
+    job j;
+    stats = stats ? stats : &own_stats;
+    lr_status status = start(&j, device, scene, options, stats, error);
+    if (!status)
+        status = make_picture(&j, &picture, error);
+    if (!status)
+        status = render_sums(&j, scene, &sums, &picture, error);
+    if (!status)
+        status = lr_sums_write(&sums, path, error);
+    if (!status)
+        complete_stats(&j, &picture, stats);
+    lr_picture_free(&picture);
+    lr_sums_free(&sums);
+    finish(&j);
     return status;
 }

@@ -1,11 +1,13 @@
 /* What a caller asks for and what the scene says, as one. */
 #include "render/settings.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Of a path-traced picture that nobody asked a number for: it shows what it will be. */
 #define PATH_SAMPLES 64
 
+#define SAMPLES_MAX 65536
 #define PIXELS_MAX (1u << 28)
 
 static lr_status choose_camera(const lr_scene *scene, const char *name, const lr_camera **camera,
@@ -31,6 +33,11 @@ static lr_status choose_camera(const lr_scene *scene, const char *name, const lr
                    known[0] ? known : "one without a name");
 }
 
+static uint64_t at_least_one(uint32_t count)
+{
+    return count ? count : 1;
+}
+
 uint32_t lr_default_samples(lr_integrator integrator)
 {
     return integrator == LR_INTEGRATOR_PATH ? PATH_SAMPLES : 1;
@@ -51,18 +58,40 @@ lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_
         .crop_height = options->crop.height,
         .integrator = options->integrator ? options->integrator
                                           : (lr_integrator)(scene->image.integrator + 1),
+        .first_sample = options->sample_range.first,
+        .sample_count = options->sample_range.count,
         .filter = options->filter,
         .leaf_size = options->leaf_size,
         .threads = options->threads,
     };
     s->samples = options->samples ? options->samples : scene->image.samples;
+    if (!options->samples && options->seconds > 0)
+        s->samples = SAMPLES_MAX;
     if (!s->samples)
         s->samples = lr_default_samples(s->integrator);
     if (s->width > 32768 || s->height > 32768)
         return lr_fail(error, LR_ERROR_ARGUMENT, "the size %ux%u is over 32768 (--size)", s->width,
                        s->height);
-    if (s->samples > 65536)
-        return lr_fail(error, LR_ERROR_ARGUMENT, "%u samples are over 65536 (--spp)", s->samples);
+    if (s->samples > SAMPLES_MAX)
+        return lr_fail(error, LR_ERROR_ARGUMENT, "%u samples are over %d (--spp)", s->samples,
+                       SAMPLES_MAX);
+    if (options->seconds > 0 && s->integrator != LR_INTEGRATOR_PATH)
+        return lr_fail(error, LR_ERROR_ARGUMENT,
+                       "a time limit (--time) needs --integrator path: where a whitted sample lies "
+                       "depends on how many there will be");
+    if (options->seconds > 0 && (options->checkpoint || options->sample_range.count))
+        return lr_fail(error, LR_ERROR_ARGUMENT,
+                       "a time limit (--time) goes with neither --checkpoint nor --sample-range; "
+                       "give the number of samples by --spp");
+    if (s->first_sample >= s->samples || s->sample_count > s->samples - s->first_sample)
+        return lr_fail(error, LR_ERROR_ARGUMENT,
+                       "samples %u to %llu are not all among the picture's, 0 to %u "
+                       "(--sample-range, --spp)",
+                       s->first_sample,
+                       (unsigned long long)(s->first_sample + at_least_one(s->sample_count) - 1),
+                       s->samples - 1);
+    if (s->sample_count == 0)
+        s->sample_count = s->samples - s->first_sample;
     if (s->depth > 64)
         return lr_fail(error, LR_ERROR_ARGUMENT, "the depth %u is over 64 (--depth)", s->depth);
     if (!s->crop_width || !s->crop_height) {
@@ -80,4 +109,22 @@ lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_
                        "%ux%u pixels are over the cap of %u; render parts with --crop",
                        s->crop_width, s->crop_height, PIXELS_MAX);
     return choose_camera(scene, options->camera, &s->camera, error);
+}
+
+void lr_settings_describe(const lr_settings *settings, const lr_render_options *options, char *text,
+                          size_t size)
+{
+    static const char *const filters[] = {NULL, "box", "tent", "blackman-harris"};
+    const lr_settings *s = settings;
+    size_t used =
+        (size_t)snprintf(text, size, "%s%ux%u, %u sample%s, depth %u, seed %u",
+                         s->integrator == LR_INTEGRATOR_PATH ? "paths, " : "", s->width, s->height,
+                         s->samples, s->samples == 1 ? "" : "s", s->depth, s->seed);
+    if (options->crop.width)
+        used += (size_t)snprintf(text + used, size - used, ", crop %u,%u,%u,%u", s->crop_x,
+                                 s->crop_y, s->crop_width, s->crop_height);
+    if (options->camera)
+        used += (size_t)snprintf(text + used, size - used, ", camera %.200s", options->camera);
+    if (options->filter)
+        snprintf(text + used, size - used, ", filter %s", filters[options->filter]);
 }

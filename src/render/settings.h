@@ -12,4 +12,10 @@ uint32_t lr_default_samples(lr_integrator integrator);
 lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_settings *settings,
                     lr_error *error);
 
+/* What the pixels depend on beside the scene's own numbers, as files say it, such as "640x480, 4
+ * samples, depth 6, seed 0". Sums whose texts differ are never added, so whatever options change
+ * the picture belongs in here. size: LR_SETTINGS_TEXT. */
+void lr_settings_describe(const lr_settings *settings, const lr_render_options *options, char *text,
+                          size_t size);
+
 #endif

@@ -299,7 +299,7 @@ lr_status lr_wavefront_clear(lr_wavefront *wavefront, uint32_t pixels, lr_error 
     return lr_commands_finish(wavefront->device, error);
 }
 
-static lr_status read_film(lr_wavefront *w, const lr_tile *tile, uint32_t samples, lr_error *error)
+static lr_status read_film(lr_wavefront *w, const lr_tile *tile, lr_error *error)
 {
     double start = lr_now(), cpu_start = lr_cpu_now();
     uint32_t pixels = tile->width * tile->height;
@@ -310,11 +310,11 @@ static lr_status read_film(lr_wavefront *w, const lr_tile *tile, uint32_t sample
     status = lr_commands_finish(w->device, error);
     const uint32_t *film = w->film_host.mapped;
     for (uint32_t i = 0; !status && i < pixels; i++)
-        if (film[i * LR_FILM_WORDS + LR_FILM_SAMPLES] != samples)
+        if (film[i * LR_FILM_WORDS + LR_FILM_SAMPLES] != tile->samples)
             status = lr_fail(error, LR_ERROR_DEVICE,
                              "the device finished %u of %u samples of a pixel; its driver is "
                              "faulty, try --device cpu",
-                             film[i * LR_FILM_WORDS + LR_FILM_SAMPLES], samples);
+                             film[i * LR_FILM_WORDS + LR_FILM_SAMPLES], tile->samples);
     w->stats->read_back_seconds += lr_now() - start;
     w->stats->trace_cpu_seconds += lr_cpu_now() - cpu_start;
     return status;
@@ -324,7 +324,7 @@ lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_p
                               void *user, const uint32_t **film, lr_error *error)
 {
     lr_wavefront *w = wavefront;
-    uint32_t pixels = tile->width * tile->height, samples = w->scene->frame.samples;
+    uint32_t pixels = tile->width * tile->height, samples = tile->samples;
     lr_status status = lr_wavefront_clear(w, pixels, error);
     uint32_t at_once = at_least(w->chunk_rays / pixels, 1);
     for (uint32_t sample = 0; sample < samples && !status; sample += at_once) {
@@ -335,7 +335,7 @@ lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_p
             .rows = tile->height,
             .step = 1,
             .film_pitch = tile->width,
-            .first_sample = sample,
+            .first_sample = tile->first_sample + sample,
             .samples = at_most(at_once, samples - sample),
         };
         double fraction = (double)(sample + rays.samples) / samples;
@@ -344,7 +344,7 @@ lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_p
     if (!status)
         status = lr_wavefront_settle(w, error);
     if (!status)
-        status = read_film(w, tile, samples, error);
+        status = read_film(w, tile, error);
     *film = w->film_host.mapped;
     return status;
 }

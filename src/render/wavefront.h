@@ -53,6 +53,7 @@ typedef struct lr_wavefront {
 
 typedef struct lr_tile {
     uint32_t x, y, width, height; /* of the whole picture */
+    uint32_t first_sample, samples;
 } lr_tile;
 
 /* Called between dispatches; false stops the render. */
@@ -97,7 +98,7 @@ lr_status lr_wavefront_settle(lr_wavefront *wavefront, lr_error *error);
 /* Forgets the rays that wait after an interruption; what they had brought stays in the film. */
 void lr_wavefront_discard(lr_wavefront *wavefront);
 
-/* Renders all samples of a tile of at most tile_size pixels a side. *film then points at
+/* Renders the samples of a tile of at most tile_size pixels a side. *film then points at
  * LR_FILM_WORDS words a pixel, valid until the next call. */
 lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_pass_done done,
                               void *user, const uint32_t **film, lr_error *error);

@@ -5,6 +5,7 @@
 
 #include "scene/camera.h"
 #include "scene/keys.h"
+#include "scene/models.h"
 #include "scene/report.h"
 #include "scene/write.h"
 
@@ -74,11 +75,23 @@ static void put_colors(FILE *out, const lr_color colors[2])
     fputc(']', out);
 }
 
+/* Whether the stored value stands for one that other keys decide: 0, where the field itself begins
+ * above it. */
+static bool is_left_open(const lr_field *field, const void *value)
+{
+    if (field->type == LR_FIELD_INTEGER)
+        return field->minimum > 0 && *(const uint32_t *)value == 0;
+    return field->type == LR_FIELD_NUMBER && *(const double *)value == 0 &&
+           (field->minimum > 0 || (field->minimum == 0 && field->flags & LR_ABOVE));
+}
+
 /* Whether the stored value is the field's default. */
 static bool is_default(const lr_field *field, const void *value)
 {
     const double *d = field->fallback, *v = value;
-    if (field->flags & (LR_REQUIRED | LR_DERIVED))
+    if (field->flags & LR_DERIVED)
+        return is_left_open(field, value);
+    if (field->flags & LR_REQUIRED)
         return false;
     switch (field->type) {
     case LR_FIELD_NUMBER:
@@ -135,24 +148,23 @@ static bool is_written(const lr_field *field)
     return field->type <= LR_FIELD_COLORS;
 }
 
-static void put_field(mapping *map, const lr_field *field, const void *value)
+/* A field of a record, unless it is a default. */
+static void put_field(mapping *map, const lr_field *field, const void *base)
 {
+    const void *value = (const char *)base + field->offset;
+    if (!is_written(field) || is_default(field, value))
+        return;
     put_key(map, field->name);
     put_value(map->out, field, value);
 }
 
-/* The fields of a record that are not defaults; `left_out` is one that another one says. */
+/* The fields of a record; `left_out` is one that another one says. */
 static void put_record(mapping *map, const lr_record *record, const void *base,
                        const char *left_out)
 {
-    for (uint32_t i = 0; i < record->count; i++) {
-        const lr_field *field = &record->fields[i];
-        const void *value = (const char *)base + field->offset;
-        if (!is_written(field) || is_default(field, value) ||
-            (left_out && strcmp(field->name, left_out) == 0))
-            continue;
-        put_field(map, field, value);
-    }
+    for (uint32_t i = 0; i < record->count; i++)
+        if (!left_out || strcmp(record->fields[i].name, left_out) != 0)
+            put_field(map, &record->fields[i], base);
 }
 
 static bool same_numbers(const lr_field *field, const void *a, const void *b)
@@ -199,8 +211,8 @@ void lr_put_camera(FILE *out, const lr_camera *camera)
         const void *later = (const char *)&closing + field->offset;
         if (!same_numbers(field, value, later))
             put_moving(&map, field, value, camera->shutter, later);
-        else if (!is_default(field, value))
-            put_field(&map, field, value);
+        else
+            put_field(&map, field, camera);
     }
     end_mapping(&map);
 }
@@ -269,7 +281,7 @@ static void put_surroundings(lr_writer *writer)
     FILE *out = writer->out;
     mapping image = {.out = out}, fog = image;
     fputs("image: ", out);
-    put_record(&image, &lr_image_record, scene, scene->image.white == 0 ? "white" : NULL);
+    put_record(&image, &lr_image_record, scene, NULL);
     end_mapping(&image);
     fputs("\nambient: ", out);
     put_color(out, scene->ambient);
@@ -324,6 +336,24 @@ static void put_paint(lr_writer *writer, const lr_pattern *pattern)
     end_mapping(&map);
 }
 
+/* The keys that the model has, but for those that `metal` says. */
+static void put_properties(mapping *map, const lr_material *material)
+{
+    const lr_record *record = &lr_material_record;
+    for (uint32_t i = 0; i < record->count; i++) {
+        const char *name = record->fields[i].name;
+        bool index = strcmp(name, "eta") == 0 || strcmp(name, "k") == 0;
+        if (lr_model_has_key(material->model, name) && !(index && material->metal))
+            put_field(map, &record->fields[i], material);
+        /* Glass has another default than the table says. */
+        if (strcmp(name, "transmit") == 0 && lr_model_is_glass(material->model) &&
+            lr_colors_equal(material->transmit, (lr_color){0, 0, 0})) {
+            put_key(map, name);
+            put_color(map->out, material->transmit);
+        }
+    }
+}
+
 static void put_material_name(lr_writer *writer, uint32_t index)
 {
     const char *name = writer->scene->materials[index].name;
@@ -342,9 +372,11 @@ static void put_materials(lr_writer *writer)
         fputs("  ", writer->out);
         put_material_name(writer, i);
         fputs(": ", writer->out);
-        put_key(&map, "color");
-        put_paint(writer, &scene->materials[i].color);
-        put_record(&map, &lr_material_record, &scene->materials[i], NULL);
+        if (lr_model_has_key(scene->materials[i].model, "color")) {
+            put_key(&map, "color");
+            put_paint(writer, &scene->materials[i].color);
+        }
+        put_properties(&map, &scene->materials[i]);
         end_mapping(&map);
         fputc('\n', writer->out);
     }

@@ -7,7 +7,7 @@ expect 0 "$lavaray" --version && says out '^lavaray [0-9]+\.[0-9]+\.[0-9]+$'
 for words in --help help -h; do
     expect 0 "$lavaray" "$words" && says out '^Exit codes:'
 done
-for command in render explain devices doctor validate info convert schema compare; do
+for command in render merge explain devices doctor validate info convert schema compare; do
     expect 0 "$lavaray" "$command" --help && says out "^Usage: lavaray $command"
     [ ! -s "$work/err" ] || problem "$command --help prints on stderr"
     awk 'length > 80 { exit 1 }' "$work/out" || problem "$command --help is wider than 80 columns"
@@ -15,7 +15,8 @@ for command in render explain devices doctor validate info convert schema compar
 done
 expect 0 "$lavaray" render --help
 says out '^For tests: the picture does not depend on these:'
-for flag in output format size spp depth seed maxval transfer half exposure tone white denoise camera crop device stats quiet \
+for flag in output format size spp depth seed maxval transfer half exposure tone white denoise camera crop sample-range \
+    time checkpoint device stats quiet \
     verbose tile chunk storage-loads; do
     says out "--$flag( |$)"
 done

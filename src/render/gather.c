@@ -1,0 +1,270 @@
+#include "render/gather.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define CHECKPOINT_SECONDS 30.0
+
+/* A checkpoint that takes long to write is written the more seldom, by this. */
+#define CHECKPOINT_SHARE 20.0
+
+/* Samples that a pass over the picture brings each pixel at least: fewer would spend too much of
+ * the time reading the film back. */
+#define PASS_SAMPLES 16u
+
+typedef struct gather {
+    lr_wavefront *wavefront;
+    const lr_settings *settings;
+    const lr_render_options *options;
+    lr_sums *sums;
+    lr_render_stats *stats;
+    double done, total;     /* samples of all pixels */
+    double running;         /* of the rectangle that is being traced */
+    double next_checkpoint; /* lr_now() */
+    double start;           /* ... when the time began that is limited */
+} gather;
+
+/* A piece of the film. */
+typedef struct rectangle {
+    uint32_t x, y, width, height;
+} rectangle;
+
+static bool report_progress(void *user, double fraction)
+{
+    gather *g = user;
+    double limit = g->options->seconds;
+    if (limit > 0 && g->options->progress) {
+        double passed = (lr_now() - g->start) / limit;
+        return g->options->progress(g->options->user, passed < 1 ? passed : 1);
+    }
+    return !g->options->progress ||
+           g->options->progress(g->options->user, (g->done + fraction * g->running) / g->total);
+}
+
+/* ---- Checkpoints -------------------------------------------------------------------------- */
+
+static double checkpoint_seconds(const gather *g)
+{
+    return g->options->checkpoint_seconds > 0 ? g->options->checkpoint_seconds : CHECKPOINT_SECONDS;
+}
+
+/* What cannot be written now may be later, so this is no reason to lose what has been traced. */
+static void write_checkpoint(gather *g)
+{
+    lr_error problem = {0};
+    double start = lr_now();
+    lr_status status = lr_sums_write(g->sums, g->options->checkpoint, &problem);
+    snprintf(g->stats->checkpoint_problem, sizeof g->stats->checkpoint_problem, "%.255s",
+             status ? problem.message : "");
+    double pause = CHECKPOINT_SHARE * (lr_now() - start), least = checkpoint_seconds(g);
+    g->next_checkpoint = lr_now() + (pause > least ? pause : least);
+}
+
+static lr_status check_checkpoint(const lr_sums *found, const lr_sums *wanted, const char *path,
+                                  lr_error *error)
+{
+    const char *other = NULL;
+    if (strcmp(found->id.software, wanted->id.software) != 0)
+        other = "another version of lavaray";
+    else if (strcmp(found->id.numbers, wanted->id.numbers) != 0)
+        other = "another scene";
+    if (other)
+        return lr_fail(error, LR_ERROR_FILE,
+                       "%.500s: is a checkpoint of %s; name another file, or delete it to begin "
+                       "anew",
+                       path, other);
+    if (strcmp(found->id.settings, wanted->id.settings) != 0 || found->first != wanted->first ||
+        found->count != wanted->count || found->width != wanted->width ||
+        found->height != wanted->height)
+        return lr_fail(
+            error, LR_ERROR_FILE,
+            "%.200s: is a checkpoint of other settings: samples %u-%u of %.200s; this is "
+            "samples %u-%u of %.200s; name another file, or delete it to begin anew",
+            path, found->first, found->first + found->count - 1, found->id.settings, wanted->first,
+            wanted->first + wanted->count - 1, wanted->id.settings);
+    return LR_OK;
+}
+
+static lr_status resume(gather *g, lr_error *error)
+{
+    const char *path = g->options->checkpoint;
+    struct stat info;
+    bool exists = stat(path, &info) == 0;
+    if (!exists && errno == ENOENT)
+        return LR_OK;
+    lr_sums found = {0};
+    lr_error cause = {0};
+    lr_status status = exists && !S_ISREG(info.st_mode)
+                           ? lr_fail(&cause, LR_ERROR_FILE, "%.500s: is no regular file", path)
+                           : lr_sums_read(path, &found, &cause);
+    if (status)
+        return lr_fail(error, status,
+                       "the checkpoint %.700s; name another file, or delete it to begin anew",
+                       cause.message);
+    status = check_checkpoint(&found, g->sums, path, error);
+    if (!status) {
+        uint32_t *film = g->sums->film;
+        g->sums->film = found.film;
+        found.film = film;
+    }
+    lr_sums_free(&found);
+    return status;
+}
+
+/* ---- Passes ------------------------------------------------------------------------------- */
+
+static uint32_t at_most(uint32_t value, uint32_t most)
+{
+    return value < most ? value : most;
+}
+
+static void add_film(const gather *g, const rectangle *r, const uint32_t *film)
+{
+    for (uint32_t y = 0; y < r->height; y++) {
+        uint32_t *pixel = lr_sums_pixel(g->sums, r->x, r->y + y);
+        for (uint32_t x = 0; x < r->width; x++, film += LR_FILM_WORDS, pixel += LR_FILM_WORDS)
+            lr_film_add(pixel, film);
+    }
+}
+
+/* Adds the samples from number `from` up to `to` of the sums' to the pixels of r. */
+static lr_status trace(gather *g, const rectangle *r, uint32_t from, uint32_t to, lr_error *error)
+{
+    lr_tile tile = {
+        .x = g->settings->crop_x + r->x,
+        .y = g->settings->crop_y + r->y,
+        .width = r->width,
+        .height = r->height,
+        .first_sample = g->sums->first + from,
+        .samples = to - from,
+    };
+    const uint32_t *film;
+    g->running = (double)r->width * r->height * tile.samples;
+    lr_status status = lr_wavefront_render(g->wavefront, &tile, report_progress, g, &film, error);
+    if (status)
+        return status;
+    add_film(g, r, film);
+    g->done += g->running;
+    if (g->options->checkpoint && lr_now() >= g->next_checkpoint)
+        write_checkpoint(g);
+    return LR_OK;
+}
+
+/* The samples that all pixels of r have, taking those with `target` and more for equal; UINT32_MAX:
+ * they have different numbers. */
+static uint32_t common_count(const gather *g, const rectangle *r, uint32_t target)
+{
+    uint32_t common = at_most(lr_sums_pixel(g->sums, r->x, r->y)[LR_FILM_SAMPLES], target);
+    for (uint32_t y = 0; y < r->height; y++) {
+        const uint32_t *pixel = lr_sums_pixel(g->sums, r->x, r->y + y);
+        for (uint32_t x = 0; x < r->width; x++, pixel += LR_FILM_WORDS)
+            if (at_most(pixel[LR_FILM_SAMPLES], target) != common)
+                return UINT32_MAX;
+    }
+    return common;
+}
+
+/* Brings the pixels of r to `target` samples, in halves where they have different numbers: those of
+ * a checkpoint whose tiles were others. */
+static lr_status reach(gather *g, rectangle r, uint32_t target, lr_error *error)
+{
+    uint32_t from = common_count(g, &r, target);
+    if (from == target)
+        return LR_OK;
+    if (from != UINT32_MAX)
+        return trace(g, &r, from, target, error);
+    rectangle first = r, second = r;
+    if (r.width >= r.height) {
+        first.width = r.width / 2;
+        second.x += first.width;
+        second.width -= first.width;
+    } else {
+        first.height = r.height / 2;
+        second.y += first.height;
+        second.height -= first.height;
+    }
+    lr_status status = reach(g, first, target, error);
+    return status ? status : reach(g, second, target, error);
+}
+
+/* A pass over the picture, tile by tile. */
+static lr_status reach_all(gather *g, uint32_t target, lr_error *error)
+{
+    uint32_t size = g->wavefront->tile_size, width = g->sums->width, height = g->sums->height;
+    lr_status status = LR_OK;
+    for (uint32_t y = 0; y < height && !status; y += size)
+        for (uint32_t x = 0; x < width && !status; x += size) {
+            rectangle tile = {x, y, at_most(size, width - x), at_most(size, height - y)};
+            status = reach(g, tile, target, error);
+        }
+    return status;
+}
+
+/* Passes that bring each tile as many samples as are traced at once. */
+static lr_status reach_in_passes(gather *g, lr_error *error)
+{
+    uint32_t size = g->wavefront->tile_size, step = g->wavefront->chunk_rays / (size * size);
+    step = step > PASS_SAMPLES ? step : PASS_SAMPLES;
+    lr_status status = LR_OK;
+    for (uint32_t target = 0; target < g->sums->count && !status;) {
+        target = g->sums->count - target > step ? target + step : g->sums->count;
+        status = reach_all(g, target, error);
+    }
+    return status;
+}
+
+/* Whole passes over the picture until the time is up, about: none is begun that would take longer
+ * than what is left. Each takes up to half of that, by what the one before took, so that the last
+ * ones are short. */
+static lr_status reach_in_time(gather *g, lr_error *error)
+{
+    uint32_t most = g->sums->count, reached = 0, next = 1;
+    lr_status status = LR_OK;
+    while (next > 0 && !status) {
+        double begun = lr_now();
+        status = reach_all(g, reached + next, error);
+        double now = lr_now(), left = g->start + g->options->seconds - now;
+        double fitting = left * next / (now - begun);
+        reached += next;
+        fitting = fitting < 2 ? fitting : fitting / 2;
+        next = at_most(fitting < reached ? (uint32_t)(fitting > 0 ? fitting : 0) : reached,
+                       most - reached);
+    }
+    g->sums->count = reached;
+    return status;
+}
+
+/* Whatever happens, a checkpoint is left of what has been traced. */
+static lr_status reach_with_checkpoints(gather *g, lr_error *error)
+{
+    lr_status status = resume(g, error);
+    if (status)
+        return status;
+    g->stats->resumed = lr_sums_done(g->sums);
+    g->done = g->stats->resumed * g->total;
+    g->next_checkpoint = lr_now() + checkpoint_seconds(g);
+    status = reach_in_passes(g, error);
+    if (status && g->done > g->stats->resumed * g->total)
+        write_checkpoint(g);
+    return status;
+}
+
+lr_status lr_gather(lr_wavefront *wavefront, const lr_settings *settings,
+                    const lr_render_options *options, lr_sums *sums, double start, lr_error *error)
+{
+    gather g = {
+        .wavefront = wavefront,
+        .settings = settings,
+        .options = options,
+        .sums = sums,
+        .stats = wavefront->stats,
+        .start = start,
+        .total = (double)sums->width * sums->height * sums->count,
+    };
+    if (options->seconds > 0)
+        return reach_in_time(&g, error);
+    return options->checkpoint ? reach_with_checkpoints(&g, error)
+                               : reach_all(&g, sums->count, error);
+}

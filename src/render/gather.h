@@ -1,0 +1,15 @@
+/* Gathers samples into the sums of a picture, in an order that can be left and taken up again at
+ * any time: the counts of samples in the film are all the state there is. */
+#ifndef LR_RENDER_GATHER_H
+#define LR_RENDER_GATHER_H
+
+#include "render/sums.h"
+#include "render/wavefront.h"
+
+/* Brings all pixels of the sums to the samples that they are to have. With a checkpoint, first
+ * takes over what it holds; a failure on the way leaves one behind. With a time limit, which began
+ * at `start` (lr_now), sums->count becomes the number of samples reached. */
+lr_status lr_gather(lr_wavefront *wavefront, const lr_settings *settings,
+                    const lr_render_options *options, lr_sums *sums, double start, lr_error *error);
+
+#endif
