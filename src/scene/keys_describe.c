@@ -8,7 +8,7 @@
 const lr_record *lr_record_at(uint32_t index)
 {
     static const lr_record *const singles[] = {
-        &lr_scene_record,      &lr_camera_record,   &lr_image_record,    &lr_fog_record,
+        &lr_scene_record,    &lr_camera_record,   &lr_image_record, &lr_fog_record,
         &lr_material_record, &lr_rotation_record, &lr_group_record,
     };
     const uint32_t single_count = sizeof singles / sizeof singles[0];
@@ -137,8 +137,9 @@ const char *lr_field_expected(const lr_field *field, char buffer[LR_EXPECTED_MAX
                  "{checker: [white, black]}");
         break;
     case LR_FIELD_BACKGROUND:
-        snprintf(buffer, size, "a colour, {gradient: [below, above]}, {image: file} or {sky: direction to "
-                               "the sun}");
+        snprintf(buffer, size,
+                 "a colour, {gradient: [below, above]}, {image: file} or {sky: direction to "
+                 "the sun}");
         break;
     case LR_FIELD_MATERIAL:
         snprintf(buffer, size, "the name of a material or a mapping of material keys");

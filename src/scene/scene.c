@@ -57,10 +57,11 @@ static void read_closing(lr_reader *reader, const lr_node *node, const lr_node *
 {
     lr_camera closing = {.up = up};
     lr_given given;
-    reader->options.frame += camera->shutter;
+    double frame = reader->options.frame;
+    reader->options.frame = frame + camera->shutter;
     bool good = lr_read_record(reader, node, at, &lr_camera_record, &closing, &given) &&
                 check_camera(reader, &closing, &given, at);
-    reader->options.frame -= camera->shutter;
+    reader->options.frame = frame;
     if (good)
         lr_camera_move(camera, &closing);
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "scene/camera.h"
 #include "scene/keys.h"
 #include "scene/models.h"
 #include "scene/report.h"
@@ -166,6 +167,30 @@ static void put_record(mapping *map, const lr_record *record, const void *base,
             put_field(map, &record->fields[i], base);
 }
 
+static bool same_numbers(const lr_field *field, const void *a, const void *b)
+{
+    size_t count = field->type == LR_FIELD_VECTOR ? 3 : field->type == LR_FIELD_NUMBER ? 1 : 0;
+    const double *x = a, *y = b;
+    bool same = true;
+    for (size_t i = 0; i < count; i++)
+        same = same && x[i] == y[i];
+    return same;
+}
+
+/* A value that is another one at a later frame. */
+static void put_moving(mapping *map, const lr_field *field, const void *value, double frame,
+                       const void *later)
+{
+    put_key(map, field->name);
+    fputs("{keys: {0: ", map->out);
+    put_value(map->out, field, value);
+    fputs(", ", map->out);
+    lr_put_number(map->out, frame);
+    fputs(": ", map->out);
+    put_value(map->out, field, later);
+    fputs("}}", map->out);
+}
+
 static const lr_record *record_of(const lr_record *records, uint32_t count, int kind)
 {
     for (uint32_t i = 0; i < count; i++)
@@ -179,7 +204,16 @@ static const lr_record *record_of(const lr_record *records, uint32_t count, int 
 void lr_put_camera(FILE *out, const lr_camera *camera)
 {
     mapping map = {.out = out};
-    put_record(&map, &lr_camera_record, camera, NULL);
+    lr_camera closing = lr_camera_closing(camera);
+    for (uint32_t i = 0; i < lr_camera_record.count; i++) {
+        const lr_field *field = &lr_camera_record.fields[i];
+        const void *value = (const char *)camera + field->offset;
+        const void *later = (const char *)&closing + field->offset;
+        if (!same_numbers(field, value, later))
+            put_moving(&map, field, value, camera->shutter, later);
+        else
+            put_field(&map, field, camera);
+    }
     end_mapping(&map);
 }
 

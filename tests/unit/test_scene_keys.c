@@ -54,7 +54,7 @@ static void test_values(void **state)
         assert_near(s->cameras[0].fov, 30 + 20 * share, 1e-12);
         assert_near(s->cameras[0].focus, 2, 0); /* before the first key */
         assert_near(s->image.exposure, -1 + 2 * share, 1e-12);
-        assert_vector(s->background[1], share, share, share);
+        assert_vector(s->background.colors[1], share, share, share);
         assert_vector(s->materials[0].color.colors[0], 1 - share, 0, share);
         assert_vector(s->materials[0].color.colors[1], 1 - share, 0, share);
         assert_near(s->materials[0].emission.x, 5 * share, 1e-12);

@@ -386,6 +386,8 @@ static void save_in(const char *path)
     lr_hash_bytes(text, length, hash);
     assert_string_equal(hash, scene->sha256);
     for (uint32_t i = 0; i < scene->camera_count; i++) {
+        if (scene->cameras[i].moves) /* its keys stay as they are: test_scene_keys.c */
+            continue;
         lr_camera camera = scene->cameras[i];
         camera.from = (lr_vec3){1.0 / 3 + i, -2e-9, 1e4 / 7};
         camera.to.z += 0.1;

@@ -2,6 +2,7 @@
 #include "scene_tests.h"
 
 #include "base/file.h"
+#include "scene/camera.h"
 #include "scene/nff.h"
 #include "temporary_folder.h"
 
@@ -144,6 +145,9 @@ static void compare_cameras(const lr_camera *a, const lr_camera *b)
     SAME(focus);
     SAME(blades);
     SAME(blade_rotation);
+    SAME(shutter);
+    SAME(moves);
+    assert_true(lr_camera_same(a, b));
 }
 
 static void compare_textures(const lr_texture *a, const lr_texture *b)
@@ -244,6 +248,9 @@ static void test_corners(void **state)
         "[1e12, "
         "0, -0.1]}\n  'a: b': {}\n  'é#': {}\n  material1: {projection: orthographic, "
         "height: 0.1}\n  lens: {aperture: 0.02, focus: 3.3, blades: 7, blade_rotation: -5.5}\n"
+        "  moving: {from: {keys: {0: [0, 1, 5], 0.7: [0.1, 0.7, 1.9]}}, fov: {keys: {0: 40, 1: "
+        "17}}, "
+        "shutter: 0.3}\n"
         "image: {min_weight: 0.30000000000000004, exposure: -1.5, seed: 4294967295, tone: aces, "
         "white: 3200.5}\n"
         "background: {gradient: [0.1, [0, 0, 1e-30]]}\nfog: {density: 1e-9, color: 0.1}\n"
