@@ -52,6 +52,15 @@ layout(constant_id = LR_SPEC_ENVIRONMENT) const bool has_environment = true;
 layout(constant_id = LR_SPEC_SUN) const bool has_sun = true;
 layout(constant_id = LR_SPEC_EMITS_FRONT) const bool has_emits_front = true;
 layout(constant_id = LR_SPEC_CAMERA) const bool has_lens = true;
+layout(constant_id = LR_SPEC_GLOSS) const bool has_gloss = true;
+layout(constant_id = LR_SPEC_METALS) const bool has_metals = true;
+layout(constant_id = LR_SPEC_ROUGH_GLASS) const bool has_rough_glass = true;
+layout(constant_id = LR_SPEC_DELTA) const bool has_delta = true;
+layout(constant_id = LR_SPEC_COAT) const bool has_coat = true;
+layout(constant_id = LR_SPEC_SHEEN) const bool has_sheen = true;
+layout(constant_id = LR_SPEC_HIGHLIGHT) const bool has_highlight = true;
+layout(constant_id = LR_SPEC_OREN_NAYAR) const bool has_oren_nayar = true;
+layout(constant_id = LR_SPEC_MODELS) const bool has_models = true;
 
 layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame; };
 layout(set = 0, binding = LR_BIND_SCENE_TEXEL) uniform usamplerBuffer scene_texels;

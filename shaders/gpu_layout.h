@@ -94,7 +94,16 @@ typedef struct vec4 {
 #define LR_SPEC_CAMERA 45 /* some camera is more than a pinhole, or the filter than a box */
 #define LR_SPEC_ENVIRONMENT 46 /* the background is a picture or the sky, */
 #define LR_SPEC_SUN 47         /* with a sun */
-#define LR_SPEC_COUNT 48
+#define LR_SPEC_GLOSS 48       /* paths: some material has a rough reflection, */
+#define LR_SPEC_METALS 49      /* ... or any, with eta and k, */
+#define LR_SPEC_ROUGH_GLASS 50 /* ... or lets light through a rough surface, */
+#define LR_SPEC_DELTA 51       /* ... or mirrors or refracts as a smooth one, */
+#define LR_SPEC_COAT 52
+#define LR_SPEC_SHEEN 53
+#define LR_SPEC_HIGHLIGHT 54 /* ... or has the classic highlight, */
+#define LR_SPEC_OREN_NAYAR 55
+#define LR_SPEC_MODELS 56 /* ... or is not classic */
+#define LR_SPEC_COUNT 57
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -325,6 +334,57 @@ struct gpu_material {
 };
 LR_ROWS(gpu_material, 9)
 
+/* The physical side of a material, for paths. */
+#define LR_BSDF_ROWS 5u
+
+#define LR_GPU_MODEL_CLASSIC 0u /* the rest does not matter */
+#define LR_GPU_MODEL_DIFFUSE 1u
+#define LR_GPU_MODEL_DIELECTRIC 2u
+#define LR_GPU_MODEL_CONDUCTOR 3u /* Schlick's, with the colour as reflectance at normal incidence */
+#define LR_GPU_MODEL_METAL 4u     /* with eta and k, times the colour */
+#define LR_GPU_MODEL_PBR 5u
+
+struct gpu_bsdf {
+    vec3 eta; /* metals: refractive index */
+    uint model;
+    vec3 k;
+    float alpha; /* width of the microfacets' distribution; below LR_ALPHA_MIN: smooth */
+    vec3 sheen;
+    float sheen_alpha;
+    float coat;
+    float coat_alpha;
+    float metallic;
+    float transmission;
+    float roughness; /* diffuse: of Oren and Nayar's kind */
+    uint unused0;
+    uint unused1;
+    uint unused2;
+};
+LR_ROWS(gpu_bsdf, 5)
+#define LR_ALPHA_MIN 1.0e-3
+#define LR_SHEEN_ALPHA_MIN 1.0e-2
+#define LR_RATIO_FLAT 0.01 /* rough glass is smooth with a ratio of indices this close to 1 */
+
+/* What sample_bsdf found. */
+#define LR_BSDF_REFLECTS 1u
+#define LR_BSDF_TRANSMITS 2u
+#define LR_BSDF_DELTA 4u
+
+/* Tables of what rough surfaces reflect (bsdf_table.glsl, tools/make_albedo.c), one behind the other
+ * from row frame.albedo on: a row for each of the LR_ALBEDO_CELLS^2 cells of a square, with the values
+ * at its corners. */
+#define LR_ALBEDO_CELLS 47
+#define LR_ALBEDO_ROWS 2209u
+#define LR_ALBEDO_GGX 0u     /* reflected by GGX microfacets that absorb nothing */
+#define LR_ALBEDO_SCHLICK 1u /* the fifth root of the mean of Schlick's (1 - cos)^5 in that */
+#define LR_ALBEDO_SHEEN 2u
+#define LR_ALBEDO_TABLES 3u
+/* Behind these, from row frame.glass_albedo on: what glass reflects and lets through, in
+ * LR_GLASS_LAYERS squares by ratio of indices of refraction. */
+#define LR_GLASS_CELLS 24
+#define LR_GLASS_ROWS 576u
+#define LR_GLASS_LAYERS 24
+
 #define LR_GPU_WRAP_REPEAT 0u
 #define LR_GPU_WRAP_CLAMP 1u
 #define LR_GPU_WRAP_MIRROR 2u
@@ -530,8 +590,12 @@ struct gpu_frame {
     uint choice_shift;    /* LR_CHOICE_BITS - log2 of how many choices there are */
     uint environment;     /* row of the gpu_environment */
     gpu_lens lens;
+    uint bsdfs;        /* row of the gpu_bsdf of material 0 */
+    uint albedo;       /* row of the tables, */
+    uint glass_albedo; /* and of those of glass */
+    uint unused_bsdfs;
 };
-LR_ROWS(gpu_frame, 29)
+LR_ROWS(gpu_frame, 30)
 #define LR_GPU_INSPECT_NORMAL 1u
 #define LR_GPU_INSPECT_DEPTH 2u
 #define LR_GPU_INSPECT_OBJECT 3u

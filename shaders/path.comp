@@ -9,7 +9,7 @@
 #include "bindings.glsl"
 #include "air.glsl"
 #include "basis.glsl"
-#include "bsdf.glsl"
+#include "bsdf_load.glsl"
 #include "emitter.glsl"
 #include "few.glsl"
 #include "film.glsl"
@@ -125,13 +125,21 @@ void main()
     vec2 choices = sample_pair(key, pair + pair_choices);
     basis around = basis_around(here.lit_by);
     vec3 wo = to_local(around, -ray.direction);
-    bsdf b = load_bsdf(m, here.color, sides, wo);
+    vec2 chances = sample_pair(key, pair + pair_roulette);
+    bsdf b = load_bsdf(here.ids.x, m, here.color, sides, wo, chances.y);
     vec3 origin = s.lit_from + here.n * s.offset;
     bool scatters = solid_there && !last;
     bool deepest = depth >= frame.depth;
     light_sample light = sample_light_at(origin, choices.x, sample_pair(key, pair + pair_light_point));
-    bsdf_value towards = evaluate_bsdf(b, wo, to_local(around, light.wi));
+    vec3 local_wi = to_local(around, light.wi);
+    bsdf_value towards = evaluate_bsdf(b, wo, local_wi);
     bool in_front = ex_dot(light.wi, here.n) > 0.0;
+    if (has_rough_glass) {
+        // Light from behind comes through; interpolated normals must not take one side for the other.
+        bool behind = !in_front && local_wi.z < 0.0;
+        origin = mix(origin, s.position - here.n * s.offset, bvec3(behind));
+        in_front = behind || (in_front && local_wi.z > 0.0);
+    }
     vec3 value = weight * towards.f * light.value * power_heuristic(light.pdf, towards.pdf);
     bool reaches = scatters && in_front && any(greaterThanEqual(value, vec3(LR_FILM_STEP)));
     value = arriving(origin, light, value, ray.pixel, reaches);
@@ -148,7 +156,7 @@ void main()
     float survives = depth < roulette_from ? 1.0 : min(brightest(weight), 1.0);
     bool goes_on = scatters && next.kind != 0u && ex_dot(wi, side) > 0.0 &&
                    !(brightest(weight) < LR_WEIGHT_MIN) && !(brightest(weight) < frame.min_weight) &&
-                   sample_pair(key, pair + pair_roulette).x < survives;
+                   chances.x < survives;
     weight = survives < 1.0 ? weight * ex_rcp(max(survives, 1.0e-20)) : weight;
     uint kind = through ? LR_KIND_REFRACTED : LR_KIND_REFLECTED;
     uint state = (depth + 1u) | kind << LR_STATE_KIND_SHIFT | (deepest ? LR_STATE_LAST : 0u);

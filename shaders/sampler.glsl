@@ -21,7 +21,7 @@ const uint pairs_a_bounce = 4u;
 const uint pair_light_point = 0u; // within a bounce
 const uint pair_choices = 1u;     // which light; which lobe
 const uint pair_direction = 2u;
-const uint pair_roulette = 3u;
+const uint pair_roulette = 3u;    // whether the path goes on; which of a material's parts
 
 path_key key_of(uvec2 pixel, uint seed, uint index)
 {

@@ -167,6 +167,11 @@ static json_t *record_json(const render_record *r)
     if (r->white != 0) {
         json_object_set_new(picture, "white", json_real(r->white));
     }
+    if (r->denoiser) {
+        json_object_set_new(picture, "denoised",
+                            json_pack("{s:s, s:s, s:f}", "by", r->denoiser, "sha256",
+                                      r->denoised_hash, "seconds", r->denoise_seconds));
+    }
     if (s->least_samples < s->most_samples) {
         json_object_set_new(picture, "samples_traced",
                             json_pack("{s:f, s:I, s:I}", "mean", s->mean_samples, "least",
@@ -177,11 +182,6 @@ static json_t *record_json(const render_record *r)
         json_object_set_new(picture, "sample_range",
                             json_pack("[I,I]", (json_int_t)s->first_sample,
                                       (json_int_t)s->first_sample + s->sample_count - 1));
-    }
-    if (r->denoiser) {
-        json_object_set_new(picture, "denoised",
-                            json_pack("{s:s, s:s, s:f}", "by", r->denoiser, "sha256",
-                                      r->denoised_hash, "seconds", r->denoise_seconds));
     }
     json_t *rays = json_pack(
         "{s:o, s:o, s:o, s:o, s:o, s:I}", "primary", rays_json(s->primary.traced, s->primary.hit),

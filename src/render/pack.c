@@ -212,6 +212,8 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
     lr_status status = lr_pack_texture_records(scene, packed, error);
     if (!status)
         status = pack_materials(scene, packed, error);
+    if (!status && settings->integrator == LR_INTEGRATOR_PATH)
+        status = lr_pack_bsdfs(scene, packed, error);
     if (!status)
         status = pack_lights(scene, packed, error);
     if (!status)

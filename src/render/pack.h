@@ -75,6 +75,9 @@ void lr_pack_environment_choice(lr_packed_scene *packed, double picture, double 
 /* pack_objects.c: the primitives, objects and media of the scene. */
 lr_status lr_pack_objects(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);
 
+/* pack_bsdf.c: the materials once more, for paths. */
+lr_status lr_pack_bsdfs(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);
+
 /* pack_textures.c: first makes room for the records of the scene's textures, texture i in row i
  * and behind them the sky's, and last fills them and appends their texels. */
 lr_status lr_pack_texture_records(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);

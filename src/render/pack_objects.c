@@ -28,6 +28,11 @@ static const lr_material *material_of(const lr_scene *scene, uint32_t object)
     return &scene->materials[scene->objects[object].material];
 }
 
+static bool encloses_medium(const lr_material *m, const lr_primitive *p)
+{
+    return p->encloses && !lr_color_is_black(m->transmit) && m->model != LR_MODEL_THIN_GLASS;
+}
+
 /* Packs the table of media and gives the ranks of the objects' media in ranks[]. */
 static lr_status pack_media(const lr_scene *scene, const lr_primitive *primitives, uint32_t *ranks,
                             lr_packed_scene *packed, lr_error *error)
@@ -38,7 +43,7 @@ static lr_status pack_media(const lr_scene *scene, const lr_primitive *primitive
     uint32_t count = 0;
     for (uint32_t i = 0; i < scene->object_count; i++) {
         const lr_material *m = material_of(scene, i);
-        if (primitives[i].encloses && !lr_color_is_black(m->transmit))
+        if (encloses_medium(m, &primitives[i]))
             order[count++] = (medium_order){m->priority, i};
     }
     qsort(order, count, sizeof *order, compare_media);
@@ -96,7 +101,7 @@ static uint32_t flags_of(const lr_scene *scene, uint32_t object, const lr_primit
 {
     const lr_material *m = material_of(scene, object);
     bool inward = scene->objects[object].inward;
-    return (p->encloses ? LR_FLAG_SOLID : 0) |
+    return (p->encloses && m->model != LR_MODEL_THIN_GLASS ? LR_FLAG_SOLID : 0) |
            (lr_color_is_black(m->transmit) ? 0 : LR_FLAG_TRANSPARENT) |
            (scene->objects[object].shadow ? LR_FLAG_SHADOW : 0) | (inward ? LR_FLAG_INWARD : 0) |
            ((m->one_sided || inward) && p->sided ? LR_FLAG_ONE_SIDED : 0);

@@ -157,6 +157,14 @@ static void put_material(hasher *h, const lr_material *m)
     put_number(h, m->alpha_cutoff);
     put_count(h, m->one_sided);
     put_count(h, m->emits);
+    put_count(h, m->model);
+    const double physical[] = {m->roughness,           m->metallic,
+                               m->transmission,        m->clearcoat,
+                               m->clearcoat_roughness, m->sheen_roughness};
+    put_numbers(h, physical, sizeof physical / sizeof *physical);
+    put_vector(h, m->eta);
+    put_vector(h, m->k);
+    put_vector(h, m->sheen);
 }
 
 static void put_shape(hasher *h, const lr_object *object)

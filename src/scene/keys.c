@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "scene/models.h"
+
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 #define MEMBER(type, member) .offset = offsetof(type, member)
 #define RANGE(low, high) .minimum = (low), .maximum = (high)
@@ -203,7 +205,15 @@ const lr_record lr_pattern_records[] = {
 };
 const uint32_t lr_pattern_record_count = COUNT(lr_pattern_records);
 
+#define SHARE(name_, member_, doc_)                                                                \
+    {                                                                                              \
+        name_, LR_FIELD_NUMBER, 0, RANGE(0, 1), DEFAULT(0), MEMBER(lr_material, member_),          \
+            .doc = (doc_)                                                                          \
+    }
+
 static const lr_field material_fields[] = {
+    {"model", LR_FIELD_CHOICE, 0, DEFAULT(LR_MODEL_CLASSIC), MEMBER(lr_material, model),
+     .choices = lr_model_names, .doc = "What it is made of; each model has keys of its own."},
     {"color", LR_FIELD_PAINT, 0, COLOR, DEFAULT(0.8, 0.8, 0.8), MEMBER(lr_material, color),
      .doc = "The colour of the surface: a colour, a pattern or a picture."},
     {"ambient", LR_FIELD_COLOR, LR_DERIVED, COLOR, MEMBER(lr_material, ambient),
@@ -219,7 +229,7 @@ static const lr_field material_fields[] = {
     {"reflect", LR_FIELD_COLOR, 0, RANGE(0, 1), DEFAULT(0), MEMBER(lr_material, reflect),
      .doc = "Weight of the mirrored ray."},
     {"transmit", LR_FIELD_COLOR, 0, RANGE(0, 1), DEFAULT(0), MEMBER(lr_material, transmit),
-     .doc = "Weight of the ray that goes through."},
+     .doc = "Weight of the ray that goes through; of glass it is 1 unless it is given."},
     {"ior", LR_FIELD_NUMBER, 0, RANGE(0.01, 100), DEFAULT(1.5), MEMBER(lr_material, ior),
      .doc = "Index of refraction of the inside."},
     {"fresnel", LR_FIELD_BOOLEAN, 0, DEFAULT(0), MEMBER(lr_material, fresnel),
@@ -236,6 +246,21 @@ static const lr_field material_fields[] = {
      .doc = "Where the picture's alpha is below this, there is no surface."},
     {"one_sided", LR_FIELD_BOOLEAN, 0, DEFAULT(0), MEMBER(lr_material, one_sided),
      .doc = "Flat and open objects are not there as seen from behind."},
+    SHARE("roughness", roughness, "From smooth to rough; its square is the width of the facets."),
+    {"metal", LR_FIELD_CHOICE, 0, DEFAULT(LR_METAL_NONE), MEMBER(lr_material, metal),
+     .choices = lr_metal_names,
+     .doc = "A conductor that has been measured, in place of eta and k."},
+    {"eta", LR_FIELD_COLOR, 0, RANGE(0, 100), DEFAULT(0), MEMBER(lr_material, eta),
+     .doc = "Refractive index of a conductor, the real part."},
+    {"k", LR_FIELD_COLOR, 0, RANGE(0, 100), DEFAULT(0), MEMBER(lr_material, k),
+     .doc = "Refractive index of a conductor, the imaginary part."},
+    SHARE("metallic", metallic, "From dielectric to metal."),
+    SHARE("transmission", transmission, "Share of light that goes in where it is no metal."),
+    SHARE("clearcoat", clearcoat, "Strength of a clear coat above all else."),
+    SHARE("clearcoat_roughness", clearcoat_roughness, "Roughness of the coat."),
+    {"sheen", LR_FIELD_COLOR, 0, RANGE(0, 1), DEFAULT(0), MEMBER(lr_material, sheen),
+     .doc = "Colour of fibres that stand out of cloth."},
+    SHARE("sheen_roughness", sheen_roughness, "Roughness of the fibres."),
 };
 const lr_record lr_material_record =
     RECORD("material", "How a surface and its inside look.", material_fields, 0);

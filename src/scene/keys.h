@@ -55,7 +55,7 @@ typedef struct lr_field {
     const char *const *choices; /* ends with NULL */
 } lr_field;
 
-#define LR_FIELDS_MAX 16
+#define LR_FIELDS_MAX 40
 
 struct lr_record {
     const char *name; /* as messages call it */

@@ -2,6 +2,7 @@
 #include "scene/read.h"
 
 #include "base/memory.h"
+#include "scene/models.h"
 #include "scene/path.h"
 #include "scene/texture.h"
 
@@ -88,6 +89,50 @@ static double greatest(lr_color c)
     return fmax(c.x, fmax(c.y, c.z));
 }
 
+/* Reports keys that belong to other models. */
+static void check_keys(lr_reader *reader, const lr_given *given, lr_model model)
+{
+    const lr_record *record = &lr_material_record;
+    for (uint32_t i = 0; i < record->count; i++) {
+        const char *name = record->fields[i].name;
+        char others[128] = "";
+        if (!given->values[i] || lr_model_has_key(model, name))
+            continue;
+        for (int other = 0; lr_model_names[other]; other++)
+            if (lr_model_has_key((lr_model)other, name))
+                snprintf(others + strlen(others), sizeof others - strlen(others), "%s%s",
+                         others[0] ? ", " : "", lr_model_names[other]);
+        lr_report_add(reader->report, given->values[i]->offset,
+                      "%s is no key of materials of model %s, expected model: %s", name,
+                      lr_model_names[model], others);
+    }
+}
+
+/* What follows from the keys of a model other than the classic one. */
+static void complete_model(lr_reader *reader, const lr_given *given, lr_material *material)
+{
+    const lr_record *record = &lr_material_record;
+    const lr_node *metal = lr_given_value(given, record, "metal");
+    const lr_node *eta = lr_given_value(given, record, "eta");
+    const lr_node *k = lr_given_value(given, record, "k");
+    bool measured = material->metal != LR_METAL_NONE;
+    if (measured && (eta || k))
+        lr_report_add(reader->report, metal->offset,
+                      "metal stands beside %s, expected one of the two", eta ? "eta" : "k");
+    else if (material->model == LR_MODEL_CONDUCTOR && !eta != !k)
+        lr_report_add(reader->report, (eta ? eta : k)->offset, "%s needs %s beside it",
+                      eta ? "eta" : "k", eta ? "k" : "eta");
+    if (measured)
+        lr_metal_index(material->metal, &material->eta, &material->k);
+    /* The colour of a metal is in its refractive index; that of glass is `transmit`. */
+    bool white = lr_model_is_glass(material->model) || measured || eta;
+    if (white && !lr_given_value(given, record, "color"))
+        material->color.colors[0] = material->color.colors[1] = (lr_color){1, 1, 1};
+    if (lr_model_is_glass(material->model) && !lr_given_value(given, record, "transmit"))
+        material->transmit = (lr_color){1, 1, 1};
+    lr_approximate(material);
+}
+
 /* Reads a material over its defaults. The result is usable even when errors were reported. */
 static void read_material(lr_reader *reader, const lr_node *node, const lr_node *at,
                           lr_material *material)
@@ -107,6 +152,11 @@ static void read_material(lr_reader *reader, const lr_node *node, const lr_node 
         read_paint(reader, color, field, &material->color);
         if (material->color.kind == LR_PATTERN_NONE)
             material->color.colors[1] = material->color.colors[0];
+    }
+    check_keys(reader, &given, material->model);
+    if (material->model != LR_MODEL_CLASSIC) {
+        complete_model(reader, &given, material);
+        return;
     }
     /* What is mirrored or let through is not scattered as well; with a coloured share, its greatest
      * component counts, so that the default stays grey. */

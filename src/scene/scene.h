@@ -71,6 +71,28 @@ typedef struct lr_pattern {
 typedef enum lr_highlight { LR_HIGHLIGHT_BLINN, LR_HIGHLIGHT_PHONG } lr_highlight;
 
 typedef enum lr_emits { LR_EMITS_BOTH, LR_EMITS_FRONT } lr_emits;
+/* What a material is made of, for paths. The fields of the classic shading are then an
+ * approximation (models.h). */
+typedef enum lr_model {
+    LR_MODEL_CLASSIC,
+    LR_MODEL_DIFFUSE,
+    LR_MODEL_DIELECTRIC,
+    LR_MODEL_CONDUCTOR,
+    LR_MODEL_PBR,
+    LR_MODEL_THIN_GLASS,
+} lr_model;
+
+typedef enum lr_metal {
+    LR_METAL_NONE,
+    LR_METAL_GOLD,
+    LR_METAL_SILVER,
+    LR_METAL_COPPER,
+    LR_METAL_ALUMINIUM,
+    LR_METAL_CHROMIUM,
+    LR_METAL_TUNGSTEN,
+    LR_METAL_IRON,
+    LR_METAL_NICKEL,
+} lr_metal;
 
 typedef struct lr_material {
     char *name; /* NULL for one written inside an object */
@@ -87,6 +109,13 @@ typedef struct lr_material {
     int priority;        /* -100..100: which of two overlapping media fills the overlap */
     double alpha_cutoff; /* where its texture's alpha is below, no surface; 0: everywhere */
     bool one_sided;      /* from behind, flats, triangles and open cones are not there */
+    lr_model model;      /* the rest is 0 where it does not use it */
+    double roughness;    /* 0..1; its square is the width of the microfacets' distribution */
+    lr_metal metal;      /* conductor: the one that eta and k are of */
+    lr_color eta, k;     /* conductor: refractive index; all 0: `color` is its reflectance */
+    double metallic, transmission, clearcoat, clearcoat_roughness; /* pbr: 0..1 */
+    lr_color sheen;                                                /* pbr: 0..1 */
+    double sheen_roughness;
 } lr_material;
 
 typedef enum lr_object_kind {

@@ -4,6 +4,7 @@
 #include <strings.h>
 
 #include "scene/keys.h"
+#include "scene/models.h"
 #include "scene/report.h"
 #include "scene/write.h"
 
@@ -73,12 +74,24 @@ static void put_colors(FILE *out, const lr_color colors[2])
     fputc(']', out);
 }
 
+/* Whether a derived value was not given: it is zero then, where zero cannot be given. */
+static bool is_absent(const lr_field *field, const void *value)
+{
+    if (!(field->minimum > 0))
+        return false;
+    if (field->type == LR_FIELD_NUMBER)
+        return *(const double *)value == 0;
+    return field->type == LR_FIELD_INTEGER && *(const uint32_t *)value == 0;
+}
+
 /* Whether the stored value is the field's default. */
 static bool is_default(const lr_field *field, const void *value)
 {
     const double *d = field->fallback, *v = value;
-    if (field->flags & (LR_REQUIRED | LR_DERIVED))
+    if (field->flags & LR_REQUIRED)
         return false;
+    if (field->flags & LR_DERIVED)
+        return is_absent(field, value);
     switch (field->type) {
     case LR_FIELD_NUMBER:
         return *v == d[0];
@@ -134,19 +147,23 @@ static bool is_written(const lr_field *field)
     return field->type <= LR_FIELD_COLORS;
 }
 
-/* The fields of a record that are not defaults; `left_out` is one that another one says. */
+/* A field of a record, unless it is a default. */
+static void put_field(mapping *map, const lr_field *field, const void *base)
+{
+    const void *value = (const char *)base + field->offset;
+    if (!is_written(field) || is_default(field, value))
+        return;
+    put_key(map, field->name);
+    put_value(map->out, field, value);
+}
+
+/* The fields of a record; `left_out` is one that another one says. */
 static void put_record(mapping *map, const lr_record *record, const void *base,
                        const char *left_out)
 {
-    for (uint32_t i = 0; i < record->count; i++) {
-        const lr_field *field = &record->fields[i];
-        const void *value = (const char *)base + field->offset;
-        if (!is_written(field) || is_default(field, value) ||
-            (left_out && strcmp(field->name, left_out) == 0))
-            continue;
-        put_key(map, field->name);
-        put_value(map->out, field, value);
-    }
+    for (uint32_t i = 0; i < record->count; i++)
+        if (!left_out || strcmp(record->fields[i].name, left_out) != 0)
+            put_field(map, &record->fields[i], base);
 }
 
 static const lr_record *record_of(const lr_record *records, uint32_t count, int kind)
@@ -230,7 +247,7 @@ static void put_surroundings(lr_writer *writer)
     FILE *out = writer->out;
     mapping image = {.out = out}, fog = image;
     fputs("image: ", out);
-    put_record(&image, &lr_image_record, scene, scene->image.white == 0 ? "white" : NULL);
+    put_record(&image, &lr_image_record, scene, NULL);
     end_mapping(&image);
     fputs("\nambient: ", out);
     put_color(out, scene->ambient);
@@ -285,6 +302,24 @@ static void put_paint(lr_writer *writer, const lr_pattern *pattern)
     end_mapping(&map);
 }
 
+/* The keys that the model has, but for those that `metal` says. */
+static void put_properties(mapping *map, const lr_material *material)
+{
+    const lr_record *record = &lr_material_record;
+    for (uint32_t i = 0; i < record->count; i++) {
+        const char *name = record->fields[i].name;
+        bool index = strcmp(name, "eta") == 0 || strcmp(name, "k") == 0;
+        if (lr_model_has_key(material->model, name) && !(index && material->metal))
+            put_field(map, &record->fields[i], material);
+        /* Glass has another default than the table says. */
+        if (strcmp(name, "transmit") == 0 && lr_model_is_glass(material->model) &&
+            lr_colors_equal(material->transmit, (lr_color){0, 0, 0})) {
+            put_key(map, name);
+            put_color(map->out, material->transmit);
+        }
+    }
+}
+
 static void put_material_name(lr_writer *writer, uint32_t index)
 {
     const char *name = writer->scene->materials[index].name;
@@ -303,9 +338,11 @@ static void put_materials(lr_writer *writer)
         fputs("  ", writer->out);
         put_material_name(writer, i);
         fputs(": ", writer->out);
-        put_key(&map, "color");
-        put_paint(writer, &scene->materials[i].color);
-        put_record(&map, &lr_material_record, &scene->materials[i], NULL);
+        if (lr_model_has_key(scene->materials[i].model, "color")) {
+            put_key(&map, "color");
+            put_paint(writer, &scene->materials[i].color);
+        }
+        put_properties(&map, &scene->materials[i]);
         end_mapping(&map);
         fputc('\n', writer->out);
     }

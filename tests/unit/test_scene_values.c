@@ -29,7 +29,7 @@ static void test_defaults(void **state)
     assert_near(s->cameras[0].fov, 40, 0);
     assert_int_equal(s->image.width, 640);
     assert_int_equal(s->image.height, 480);
-    assert_int_equal(s->image.samples, 1);
+    assert_int_equal(s->image.samples, 0); /* the integrator's */
     assert_int_equal(s->image.depth, 6);
     assert_int_equal(s->image.seed, 0);
     assert_near(s->image.min_weight, 0, 0);

@@ -65,6 +65,17 @@ static void compare_materials(const lr_material *a, const lr_material *b)
     SAME(alpha_cutoff);
     SAME(one_sided);
     SAME(color.texture);
+    SAME(model);
+    SAME(roughness);
+    SAME(metal);
+    SAME(eta);
+    SAME(k);
+    SAME(metallic);
+    SAME(transmission);
+    SAME(clearcoat);
+    SAME(clearcoat_roughness);
+    SAME(sheen);
+    SAME(sheen_roughness);
 }
 
 static void compare_objects(const lr_object *a, const lr_object *b)
@@ -237,7 +248,13 @@ static void test_corners(void **state)
         "white: 3200.5}\n"
         "background: {gradient: [0.1, [0, 0, 1e-30]]}\nfog: {density: 1e-9, color: 0.1}\n"
         "up: [1, 2, 3]\nlights: []\n"
-        "materials: {'yes': {}, material: {priority: -7}, material_1: {highlight: phong}}\n"
+        "materials: {'yes': {}, material: {priority: -7}, material_1: {highlight: phong},\n"
+        "  glass: {model: dielectric, roughness: 0.1, ior: 1.3, priority: 2},\n"
+        "  black glass: {model: thin_glass, transmit: 0},\n"
+        "  gold: {model: conductor, metal: gold, roughness: 0.3, color: [1, 0.9, 0.8]},\n"
+        "  metal: {model: conductor, eta: [1, 2, 3], k: 4},\n"
+        "  cloth: {model: pbr, metallic: 0.1, transmission: 0.2, clearcoat: 0.3,\n"
+        "    clearcoat_roughness: 0.4, sheen: [0.5, 0.6, 0.7], sheen_roughness: 0.8}}\n"
         "objects:\n- sphere: {material: {ior: 1.1}, shadow: false}\n"
         "- cone: {from: [0, 0, 0], to: [0, 0, 1e-19], open: true, material: 'yes'}\n"
         "- plane: {material: {color: {stripes: [red, blue], space: object, direction: [1, 2, "
@@ -247,7 +264,7 @@ static void test_corners(void **state)
     round_trip(scene);
     char *text = write_scene(scene, "scene.yaml", LR_SCENE_YAML);
     assert_non_null(strstr(text, "  \"yes\": {"));
-    assert_non_null(strstr(text, "  material__4: {")); /* no other's name begins so */
+    assert_non_null(strstr(text, "  material__9: {")); /* no other's name begins so */
     free(text);
     lr_scene_destroy(scene);
 }

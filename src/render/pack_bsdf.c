@@ -1,0 +1,122 @@
+/* The physical side of materials, for paths, and the tables of what rough surfaces reflect. */
+#include <math.h>
+
+#include "albedo.h"
+#include "render/pack.h"
+
+static lr_status no_memory(lr_error *error)
+{
+    return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's materials");
+}
+
+static float alpha_of(double roughness)
+{
+    return (float)(roughness * roughness);
+}
+
+static uint32_t gpu_model(const lr_material *m)
+{
+    bool metal = !lr_color_is_black(m->eta) || !lr_color_is_black(m->k);
+    switch (m->model) {
+    case LR_MODEL_CLASSIC:
+        return LR_GPU_MODEL_CLASSIC;
+    case LR_MODEL_DIFFUSE:
+        return LR_GPU_MODEL_DIFFUSE;
+    case LR_MODEL_DIELECTRIC:
+    case LR_MODEL_THIN_GLASS:
+        return LR_GPU_MODEL_DIELECTRIC;
+    case LR_MODEL_CONDUCTOR:
+        return metal ? LR_GPU_MODEL_METAL : LR_GPU_MODEL_CONDUCTOR;
+    case LR_MODEL_PBR:
+        return LR_GPU_MODEL_PBR;
+    }
+    return LR_GPU_MODEL_CLASSIC;
+}
+
+static void pack_bsdf(const lr_material *m, struct gpu_bsdf *out)
+{
+    *out = (struct gpu_bsdf){
+        .eta = lr_pack_vec3(m->eta),
+        .model = gpu_model(m),
+        .k = lr_pack_vec3(m->k),
+        .alpha = alpha_of(m->roughness),
+        .sheen = lr_pack_vec3(m->sheen),
+        .sheen_alpha = fmaxf(alpha_of(m->sheen_roughness), (float)LR_SHEEN_ALPHA_MIN),
+        .coat = (float)m->clearcoat,
+        .coat_alpha = alpha_of(m->clearcoat_roughness),
+        .metallic = (float)m->metallic,
+        .transmission = (float)m->transmission,
+        .roughness = (float)m->roughness,
+    };
+}
+
+/* What the material needs of the kernel. */
+static void note_use(const lr_material *m, const struct gpu_bsdf *p, uint32_t *use)
+{
+    bool rough = p->alpha >= LR_ALPHA_MIN;
+    bool glass = p->model == LR_GPU_MODEL_DIELECTRIC || p->transmission > 0;
+    bool gloss = p->model == LR_GPU_MODEL_CONDUCTOR || p->model == LR_GPU_MODEL_METAL ||
+                 p->model == LR_GPU_MODEL_PBR;
+    use[LR_SPEC_MODELS] |= p->model != LR_GPU_MODEL_CLASSIC;
+    use[LR_SPEC_METALS] |= p->model == LR_GPU_MODEL_METAL;
+    use[LR_SPEC_OREN_NAYAR] |= p->model == LR_GPU_MODEL_DIFFUSE && p->roughness > 0;
+    use[LR_SPEC_GLOSS] |= gloss && rough;
+    use[LR_SPEC_ROUGH_GLASS] |= glass && rough;
+    /* Glass may lie in a medium of the same index of refraction. */
+    use[LR_SPEC_DELTA] |= glass || (gloss && !rough);
+    use[LR_SPEC_COAT] |= p->coat > 0;
+    use[LR_SPEC_DELTA] |= p->coat > 0 && p->coat_alpha < LR_ALPHA_MIN;
+    use[LR_SPEC_SHEEN] |= !lr_color_is_black(m->sheen);
+    if (p->model == LR_GPU_MODEL_CLASSIC) {
+        use[LR_SPEC_HIGHLIGHT] |= !lr_color_is_black(m->specular);
+        use[LR_SPEC_DELTA] |= !lr_color_is_black(m->reflect) || !lr_color_is_black(m->transmit);
+    }
+}
+
+/* The values at the corners of each cell of `layers` squares. */
+static bool pack_table(const float *values, uint32_t cells, uint32_t layers,
+                       lr_packed_scene *packed)
+{
+    uint32_t pitch = cells + 1;
+    for (uint32_t i = 0; i < layers * cells * cells; i++) {
+        uint32_t layer = i / (cells * cells), row = i / cells % cells, column = i % cells;
+        const float *at = &values[(layer * pitch + row) * pitch + column];
+        vec4 cell = {at[0], at[1], at[pitch], at[pitch + 1]};
+        if (lr_pack_rows(packed, &cell, 1) == UINT32_MAX)
+            return false;
+    }
+    return true;
+}
+
+static bool pack_tables(lr_packed_scene *packed)
+{
+    static const float *const tables[] = {
+        [LR_ALBEDO_GGX] = albedo_ggx,
+        [LR_ALBEDO_SCHLICK] = albedo_schlick,
+        [LR_ALBEDO_SHEEN] = albedo_sheen,
+    };
+    const uint32_t *use = packed->constants;
+    packed->frame.albedo = packed->row_count;
+    bool needed =
+        use[LR_SPEC_GLOSS] || use[LR_SPEC_ROUGH_GLASS] || use[LR_SPEC_COAT] || use[LR_SPEC_SHEEN];
+    for (size_t i = 0; needed && i < sizeof tables / sizeof *tables; i++)
+        if (!pack_table(tables[i], LR_ALBEDO_CELLS, 1, packed))
+            return false;
+    packed->frame.glass_albedo = packed->row_count;
+    return !use[LR_SPEC_ROUGH_GLASS] ||
+           pack_table(albedo_glass, LR_GLASS_CELLS, LR_GLASS_LAYERS, packed);
+}
+
+lr_status lr_pack_bsdfs(const lr_scene *scene, lr_packed_scene *packed, lr_error *error)
+{
+    uint32_t *use = packed->constants;
+    packed->frame.bsdfs = packed->row_count;
+    for (uint32_t i = 0; i < scene->material_count; i++) {
+        struct gpu_bsdf record;
+        pack_bsdf(&scene->materials[i], &record);
+        note_use(&scene->materials[i], &record, use);
+        if (lr_pack_rows(packed, &record, sizeof record / 16) == UINT32_MAX)
+            return no_memory(error);
+    }
+    return pack_tables(packed) ? LR_OK : no_memory(error);
+}

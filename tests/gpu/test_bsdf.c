@@ -1,0 +1,263 @@
+/* Materials of the path integrator: what they reflect and let through in all, that their samples
+ * come as their density says, and formulas against double precision. */
+#include "bsdf_tests.h"
+
+#define LEVELS 16 /* of roughness, from 0 to 1 */
+#define PI 3.14159265358979323846
+
+static lr_material material(lr_model model, double color)
+{
+    lr_color c = {color, color, color};
+    return (lr_material){.model = model,
+                         .color = {.colors = {c, c}, .size = 1, .direction = {0, 1, 0}},
+                         .transmit = model == LR_MODEL_DIELECTRIC || model == LR_MODEL_THIN_GLASS
+                                         ? (lr_color){1, 1, 1}
+                                         : (lr_color){0, 0, 0},
+                         .ior = 1.5};
+}
+
+/* ---- The white furnace --------------------------------------------------------------------- */
+
+typedef struct energy {
+    double reflected, transmitted;
+} energy;
+
+/* Of light that is 1 all around, in the greatest channel. */
+static energy energy_of(harness *h, view seen)
+{
+    enum { COUNT = 64, EACH = 256 };
+    asked.view = seen;
+    ask(h, SUM, COUNT, EACH);
+    double sums[2][3] = {{0}};
+    for (int i = 0; i < COUNT; i++) {
+        const vec4 *a[] = {&found[i].a, &found[i].b};
+        for (int k = 0; k < 2; k++) {
+            sums[k][0] += a[k]->x;
+            sums[k][1] += a[k]->y;
+            sums[k][2] += a[k]->z;
+        }
+    }
+    double ratio = seen.solid ? seen.ior1 / seen.ior2 : 1, all = COUNT * EACH;
+    return (energy){fmax(sums[0][0], fmax(sums[0][1], sums[0][2])) / all,
+                    fmax(sums[1][0], fmax(sums[1][1], sums[1][2])) / all / (ratio * ratio)};
+}
+
+static const double cosines[] = {1, 0.9, 0.7, 0.5, 0.3, 0.15, 0.05, 0.01};
+enum { COSINES = sizeof cosines / sizeof *cosines };
+
+/* Each material at all levels of roughness, seen from all cosines. */
+static void furnace(lr_device *device, const char *name, lr_material m, double least, double most,
+                    view seen)
+{
+    lr_material levels[LEVELS];
+    for (int i = 0; i < LEVELS; i++) {
+        levels[i] = m;
+        levels[i].roughness = i / (LEVELS - 1.0);
+    }
+    harness h;
+    open_harness(&h, device, levels, LEVELS);
+    double low = 9, high = 0, low_at[2] = {0}, high_at[2] = {0};
+    for (uint32_t i = 0; i < LEVELS; i++)
+        for (int c = 0; c < COSINES; c++) {
+            view now = view_at(i, cosines[c]);
+            now.ior1 = seen.ior1;
+            now.ior2 = seen.ior2;
+            now.solid = seen.solid;
+            energy e = energy_of(&h, now);
+            double sum = e.reflected + e.transmitted;
+            if (!(sum >= low)) {
+                low = sum;
+                low_at[0] = levels[i].roughness;
+                low_at[1] = cosines[c];
+            }
+            if (!(sum <= high)) {
+                high = sum;
+                high_at[0] = levels[i].roughness;
+                high_at[1] = cosines[c];
+            }
+        }
+    close_harness(&h);
+    print_message("%s: %.5f (roughness %.2f, cosine %.2f) to %.5f (roughness %.2f, cosine %.2f)\n",
+                  name, low, low_at[0], low_at[1], high, high_at[0], high_at[1]);
+    assert_true(low >= least);
+    assert_true(high <= most);
+}
+
+static void test_furnace(void **state)
+{
+    view thin = {.ior1 = 1, .ior2 = 1.5f}, into = {.ior1 = 1, .ior2 = 1.5f, .solid = 1},
+         out_of = {.ior1 = 1.5f, .ior2 = 1, .solid = 1};
+    furnace(*state, "diffuse", material(LR_MODEL_DIFFUSE, 1), 0.999, 1.001, thin);
+    furnace(*state, "conductor", material(LR_MODEL_CONDUCTOR, 1), 0.99, 1.001, thin);
+    furnace(*state, "dielectric, into", material(LR_MODEL_DIELECTRIC, 1), 0.99, 1.01, into);
+    furnace(*state, "dielectric, out of", material(LR_MODEL_DIELECTRIC, 1), 0.99, 1.01, out_of);
+    furnace(*state, "dielectric, thin", material(LR_MODEL_DIELECTRIC, 1), 0.99, 1.001, thin);
+    furnace(*state, "thin glass", material(LR_MODEL_THIN_GLASS, 1), 0.99, 1.001, thin);
+    lr_material m = material(LR_MODEL_PBR, 1);
+    furnace(*state, "pbr", m, 0.99, 1.004, thin);
+    m.metallic = 1;
+    furnace(*state, "pbr, metal", m, 0.99, 1.001, thin);
+    m.metallic = 0.5;
+    m.clearcoat = 1;
+    m.clearcoat_roughness = 0.4;
+    furnace(*state, "pbr, half metal, coated", m, 0.99, 1.004, thin);
+    m.sheen = (lr_color){1, 0.5, 0.25};
+    m.sheen_roughness = 0.3;
+    furnace(*state, "pbr, half metal, coated, with sheen", m, 0.98, 1.004, thin);
+    m = material(LR_MODEL_PBR, 1);
+    m.transmission = 0.5;
+    furnace(*state, "pbr, half glass", m, 0.99, 1.004, into);
+}
+
+/* ---- Samples against their density --------------------------------------------------------- */
+
+enum { ACROSS = 24, AROUND = 24, CELLS = ACROSS * AROUND, FINE = 16 };
+
+static uint32_t cell_of(const float wi[3])
+{
+    double turn = atan2(wi[1], wi[0]) / (2 * PI);
+    int across = (int)((wi[2] * 0.5 + 0.5) * ACROSS), around = (int)((turn - floor(turn)) * AROUND);
+    across = across < 0 ? 0 : across >= ACROSS ? ACROSS - 1 : across;
+    return (uint32_t)(across * AROUND + (around >= AROUND ? 0 : around));
+}
+
+/* The density integrated over the cells, by the midpoints of FINE^2 parts of each. */
+static void integrate(harness *h, double expected[CELLS])
+{
+    uint32_t count = 0;
+    for (int i = 0; i < ACROSS * FINE; i++)
+        for (int k = 0; k < AROUND * FINE; k++) {
+            double z = 2 * (i + 0.5) / (ACROSS * FINE) - 1, width = sqrt(1 - z * z);
+            double angle = 2 * PI * (k + 0.5) / (AROUND * FINE);
+            asked.ways[count++] =
+                (way){{(float)(width * cos(angle)), (float)(width * sin(angle)), (float)z}, 0.5f};
+        }
+    assert_int_equal(count % LR_GROUP_SIZE, 0);
+    ask(h, EVALUATE, count, 0);
+    memset(expected, 0, CELLS * sizeof *expected);
+    count = 0;
+    for (int i = 0; i < ACROSS * FINE; i++)
+        for (int k = 0; k < AROUND * FINE; k++, count++)
+            expected[i / FINE * AROUND + k / FINE] +=
+                found[count].a.w * 4 * PI / (CELLS * FINE * FINE);
+}
+
+/* The upper end of chi-square for a chance of one in some 10,000 (Wilson and Hilferty, 1931). */
+static double chi_square_limit(double freedom)
+{
+    double a = 2 / (9 * freedom), b = 1 - a + 3.72 * sqrt(a);
+    return freedom * b * b * b;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void check_samples(harness *h, const char *name, view seen)
+{
+    static double expected[CELLS];
+    static struct {
+        double expected, counted;
+    } cells[CELLS];
+    asked.view = seen;
+    integrate(h, expected);
+    ask(h, SAMPLE, MOST, 0);
+    double sum = 0, sampled = 0, worst = 0;
+    memset(cells, 0, sizeof cells);
+    for (uint32_t i = 0; i < MOST; i++) {
+        uint32_t kind = bits_of(found[i].b.w);
+        if (!(kind & LR_BSDF_DELTA) && found[i].a.w > 0) {
+            float wi[] = {found[i].a.x, found[i].a.y, found[i].a.z};
+            cells[cell_of(wi)].counted++;
+            sampled++;
+            worst = fmax(worst, fabs(sqrt(wi[0] * wi[0] + wi[1] * wi[1] + wi[2] * wi[2]) - 1));
+        }
+    }
+    for (uint32_t i = 0; i < CELLS; i++) {
+        cells[i].expected = expected[i] * MOST;
+        sum += expected[i];
+    }
+    /* Cells of few are one. */
+    qsort(cells, CELLS, sizeof *cells, compare_doubles);
+    double chi = 0, few = 0, few_counted = 0, freedom = 0;
+    for (uint32_t i = 0; i < CELLS; i++) {
+        few += cells[i].expected;
+        few_counted += cells[i].counted;
+        if (few < 20)
+            continue;
+        chi += (few_counted - few) * (few_counted - few) / few;
+        few = few_counted = 0;
+        freedom++;
+    }
+    double limit = chi_square_limit(fmax(freedom, 1));
+    print_message("%s: density %.5f in all, %.5f of samples, chi-square %.1f of at most %.1f\n",
+                  name, sum, sampled / MOST, chi, limit);
+    assert_true(worst < 1e-5);
+    assert_true(sum <= 1.001);
+    assert_true(chi <= limit);
+}
+
+static void test_samples(void **state)
+{
+    enum { DIFFUSE, METAL, ROUGHER, GLASS, PBR, CLASSIC, PHONG, CLOTH, COUNT };
+    lr_material m[COUNT];
+    m[DIFFUSE] = material(LR_MODEL_DIFFUSE, 0.5);
+    m[DIFFUSE].roughness = 0.7;
+    m[METAL] = material(LR_MODEL_CONDUCTOR, 0.9);
+    m[METAL].eta = (lr_color){0.2, 0.9, 1.1};
+    m[METAL].k = (lr_color){3.9, 2.4, 2.1};
+    m[METAL].roughness = 0.55;
+    m[ROUGHER] = material(LR_MODEL_CONDUCTOR, 0.9);
+    m[ROUGHER].roughness = 0.9;
+    m[GLASS] = material(LR_MODEL_DIELECTRIC, 1);
+    m[GLASS].roughness = 0.6;
+    m[PBR] = material(LR_MODEL_PBR, 0.6);
+    m[PBR].roughness = 0.7;
+    m[PBR].metallic = 0.4;
+    m[PBR].clearcoat = 1;
+    m[PBR].clearcoat_roughness = 0.5;
+    m[CLASSIC] = material(LR_MODEL_CLASSIC, 0.6);
+    m[CLASSIC].diffuse = (lr_color){0.5, 0.5, 0.5};
+    m[CLASSIC].specular = (lr_color){0.5, 0.5, 0.5};
+    m[CLASSIC].shininess = 20;
+    m[PHONG] = m[CLASSIC];
+    m[PHONG].highlight = LR_HIGHLIGHT_PHONG;
+    m[CLOTH] = material(LR_MODEL_PBR, 0.6);
+    m[CLOTH].roughness = 0.8;
+    m[CLOTH].sheen = (lr_color){1, 1, 1};
+    m[CLOTH].sheen_roughness = 0.5;
+    static const char *const names[] = {"rough matt",     "metal",     "rougher metal",
+                                        "glass",          "pbr",       "classic, Blinn",
+                                        "classic, Phong", "pbr, cloth"};
+    harness h;
+    open_harness(&h, *state, m, COUNT);
+    for (uint32_t i = 0; i < COUNT; i++)
+        for (int k = 0; k < 3; k++) {
+            view seen = view_at(i, (double[]){0.95, 0.6, 0.2}[k]);
+            seen.ior2 = 1.5f;
+            seen.solid = i == GLASS;
+            check_samples(&h, names[i], seen);
+            if (i != GLASS)
+                continue;
+            seen.ior1 = 1.5f;
+            seen.ior2 = 1;
+            check_samples(&h, "glass, from inside", seen);
+            seen.ior1 = 1;
+            seen.ior2 = 1.5f;
+            seen.solid = 0;
+            check_samples(&h, "glass, thin", seen);
+        }
+    close_harness(&h);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_furnace),
+        cmocka_unit_test(test_samples),
+        cmocka_unit_test(test_validation_is_silent),
+    };
+    return cmocka_run_group_tests(tests, setup_device, NULL);
+}
