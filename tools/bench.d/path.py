@@ -3,7 +3,7 @@ samples, linear) of Mitsuba's Cornell box at 512x512 and eight edges a path is 0
 64 samples a pixel; beside Mitsuba 3, if LAVARAY_MITSUBA_PYTHON is a Python that has it.
 
 Ours are whole processes; Mitsuba's seconds are without its start and compilation. The reference is made
-once by Mitsuba (mitsuba_cornell.py, about ten minutes of CPU time) and stays in .cache/path.
+once by Mitsuba (mitsuba_cornell.py, about five minutes of CPU time) and stays in .cache/path.
 """
 
 import array

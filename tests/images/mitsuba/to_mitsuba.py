@@ -13,6 +13,8 @@ import mitsuba as mi
 import numpy as np
 import yaml
 
+import compensated as _  # registers it
+
 
 def take(mapping, **defaults):
     """The values of these keys; any other key is an error."""
@@ -33,12 +35,19 @@ def spectrum(value):
 # ---- Materials
 
 
+def compensated(inner, white, tint):
+    return {"type": "compensated", "inner": inner, "white": white, "tint": mi.ScalarColor3f(*tint)}
+
+
 def conductor(m):
     _, roughness, eta, k = take(m, model=0, roughness=0, eta=None, k=None)
     base = {"eta": spectrum(eta), "k": spectrum(k)}
     if not roughness:
         return {"type": "conductor", **base}
-    return {"type": "roughconductor", "distribution": "ggx", "alpha": roughness ** 2, **base}
+    rough = {"type": "roughconductor", "distribution": "ggx", "alpha": roughness ** 2}
+    eta, k = rgb(eta), rgb(k)
+    facing = ((eta - 1) ** 2 + k ** 2) / ((eta + 1) ** 2 + k ** 2)
+    return compensated({**rough, **base}, {**rough, "material": "none"}, facing)
 
 
 def dielectric(m):
@@ -46,7 +55,8 @@ def dielectric(m):
     base = {"int_ior": float(ior), "ext_ior": 1.0}
     if not roughness:
         return {"type": "dielectric", **base}
-    return {"type": "roughdielectric", "distribution": "ggx", "alpha": roughness ** 2, **base}
+    rough = {"type": "roughdielectric", "distribution": "ggx", "alpha": roughness ** 2, **base}
+    return compensated(rough, rough, (1, 1, 1))
 
 
 def classic(m):
@@ -77,7 +87,7 @@ def material(m):
     model = m.get("model", "classic")
     bsdf = {"classic": classic, "conductor": conductor, "dielectric": dielectric}[model](m)
     if not np.any(rgb(emission)):
-        transmits = "dielectric" in bsdf["type"]
+        transmits = "dielectric" in bsdf.get("inner", bsdf)["type"]
         return bsdf if transmits else {"type": "twosided", "bsdf": bsdf}, None
     if emits != "front":
         raise SystemExit("to_mitsuba.py: Mitsuba's lamps shine to the front alone")
@@ -181,7 +191,9 @@ def background(value, folder):
     (name,) = take(value, image=None)
     picture = np.array(mi.Bitmap(os.path.join(folder, name)).convert(
         mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False), dtype=float)
-    return {"type": "envmap", "bitmap": mi.Bitmap(finer(picture).astype(np.float32))}
+    # The middle of ours is where -z is, where Mitsuba's begins.
+    turned = np.roll(finer(picture), -FINER * picture.shape[1] // 2, axis=1)
+    return {"type": "envmap", "bitmap": mi.Bitmap(turned.astype(np.float32))}
 
 
 # ---- The whole
