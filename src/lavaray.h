@@ -58,7 +58,7 @@ typedef struct lr_load_options {
     bool allow_path;        /* files may name files outside of the scene's folder */
     uint64_t max_triangles; /* of all meshes; 0: 100 million */
     uint64_t max_memory;    /* bytes for files and meshes, about; 0: 8 GiB */
-    double frame;               /* in which values with keys are read */
+    double frame;           /* in which values with keys are read */
     /* Called from time to time with what is being done and the fraction of it, 0 to 1; returning
      * false stops with LR_ERROR_INTERRUPTED. */
     bool (*progress)(void *user, const char *what, double fraction);
@@ -349,6 +349,11 @@ typedef struct lr_render_options {
      * how many. For LR_INTEGRATOR_PATH alone, whose first samples are those of any number, and
      * neither with sample_range nor checkpoint. */
     double seconds;
+    /* 0, or how noisy the picture may be, in steps of 1e-6 up to 1: blocks of 16 x 16 pixels get no
+     * more samples once an estimate of their noise, looked at when they have 16, 32, 64, ... of
+     * them, is below that. `samples` (0: 65536) is the most that a pixel gets. 0.01 is about one of
+     * 255 shades. Paths alone, and neither with seconds, sample_range nor checkpoint. */
+    double noise;
     /* NULL, or a file that keeps what has been traced, now and then and when the render ends early,
      * so that a later call with the same scene and settings goes on from there. The caller deletes
      * it once the picture is safe. LR_ERROR_FILE when it is anything else already. */
@@ -375,6 +380,8 @@ typedef struct lr_render_stats {
     uint32_t first_sample, sample_count; /* of the samples: which were asked for */
     char settings[LR_SETTINGS_TEXT]; /* what the pixels depend on beside the scene, as files say it
                                       */
+    uint32_t least_samples, most_samples; /* of any pixel: with noise they have different numbers */
+    double mean_samples;
     double resumed;               /* the share of the samples that a checkpoint brought, 0 to 1 */
     char checkpoint_problem[256]; /* why the last checkpoint could not be written; "" */
     struct {

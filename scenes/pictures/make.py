@@ -1,4 +1,4 @@
-# make.py: writes the pictures of scenes/textures.yaml beside itself, and that of the test scene cutout.
+# make.py: writes the pictures of scenes/textures.yaml and surroundings.yaml beside itself, and that of the test scene cutout.
 import math
 import pathlib
 import struct
@@ -70,6 +70,45 @@ def cutout(x, y):
     return 255, 0, 0, 255 if x == 0 else 0
 
 
+def studio(u, v):
+    """A dark room with a lit ceiling and three lamps, linear, all around (u) and from up to down (v)."""
+    if 0.47 < u < 0.53 and 0.18 < v < 0.24:
+        return 40, 40, 40
+    if 0.10 < u < 0.24 and 0.22 < v < 0.42:
+        return 9, 7.5, 6
+    if 0.70 < u < 0.78 and 0.15 < v < 0.45:
+        return 5, 7, 11
+    if v < 0.08:
+        return 0.5, 0.5, 0.5
+    return (0.05, 0.055, 0.065) if v <= 0.5 else (0.13 - 0.06 * v, 0.11 - 0.05 * v, 0.095 - 0.05 * v)
+
+
+def rgbe(color):
+    mantissa, exponent = math.frexp(max(color))
+    scale = 256 * mantissa / max(color)
+    return *(int(c * scale) for c in color), exponent + 128
+
+
+def runs(values):
+    """One channel of a row of a Radiance picture."""
+    at = 0
+    while at < len(values):
+        end = at + 1
+        while end < len(values) and values[end] == values[at] and end - at < 127:
+            end += 1
+        yield 128 + end - at
+        yield values[at]
+        at = end
+
+
+def hdr(path, width, height, color):
+    rows = [[rgbe(color((x + 0.5) / width, (y + 0.5) / height)) for x in range(width)] for y in range(height)]
+    path.write_bytes(f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode()
+                     + b"".join(bytes([2, 2, width >> 8, width & 255])
+                                + b"".join(bytes(runs([p[k] for p in row])) for k in range(4)) for row in rows))
+
+
+hdr(here / "studio.hdr", 128, 64, studio)
 png(here / "crate.png", 96, 96, crate)
 png(here / "tiles.png", 128, 128, tiles)
 png(here / "leaf.png", 64, 64, leaf, 4)

@@ -1,6 +1,5 @@
 #include "cli/encoding.h"
 
-#include "cli/output.h"
 #include "image/image.h"
 
 #include <math.h>
@@ -65,18 +64,26 @@ void finish_encoding(const encoding_values *values, const lr_scene_info *scene,
     choose_look(&values->look, scene, encoding);
 }
 
-void describe_picture(const lr_encoding *encoding, const char *settings, char *text, size_t size)
+/* "640x480, 4 samples, depth 6, seed 0" and what else the pixels depend on. */
+static void describe(const lr_encoding *encoding, const picture_origin *origin, char *text,
+                     size_t size)
 {
     FILE *out = fmemopen(text, size, "w");
     if (!out) {
         text[0] = '\0';
         return;
     }
-    fputs(settings, out);
+    fputs(origin->settings, out);
+    if (origin->frame) {
+        fprintf(out, ", frame %u", origin->frame);
+    }
     if (encoding->exposure != 0) {
         fprintf(out, ", exposure %.7g", (double)encoding->exposure);
     }
     describe_look(encoding, out);
+    if (origin->denoiser) {
+        fprintf(out, ", denoised by %s", origin->denoiser);
+    }
     if (encoding->format == LR_FORMAT_PNG && encoding->transfer == LR_TRANSFER_LINEAR) {
         fputs(", linear", out);
     }
@@ -84,16 +91,16 @@ void describe_picture(const lr_encoding *encoding, const char *settings, char *t
 }
 
 int write_picture(const lr_picture *picture, const char *path, lr_encoding encoding,
-                  const char *scene_hash, const char *settings, const char *pixel_hash)
+                  const picture_origin *origin)
 {
     lr_error error = {0};
-    char described[LR_SETTINGS_TEXT + 400];
-    describe_picture(&encoding, settings, described, sizeof described);
+    char settings[LR_SETTINGS_TEXT + 400];
+    describe(&encoding, origin, settings, sizeof settings);
     const lr_text texts[] = {
         {LR_STAMP_SOFTWARE, "lavaray " LR_VERSION},
-        {LR_STAMP_SCENE, scene_hash},
-        {LR_STAMP_SETTINGS, described},
-        {LR_STAMP_PIXELS, pixel_hash},
+        {LR_STAMP_SCENE, origin->scene_hash},
+        {LR_STAMP_SETTINGS, settings},
+        {LR_STAMP_PIXELS, origin->pixel_hash},
     };
     encoding.texts = texts;
     encoding.text_count = sizeof texts / sizeof *texts;

@@ -78,12 +78,17 @@ int choose_encoding(const command *self, const encoding_values *values, lr_encod
 void finish_encoding(const encoding_values *values, const lr_scene_info *scene,
                      lr_encoding *encoding);
 
-/* What the file says about its pixels: the settings of the render with what the encoding adds. */
-void describe_picture(const lr_encoding *encoding, const char *settings, char *text, size_t size);
+/* What a picture's file says about where it comes from. */
+typedef struct picture_origin {
+    const char *scene_hash; /* of its text */
+    const char *settings;   /* of the render */
+    const char *pixel_hash;
+    const char *denoiser; /* NULL: not denoised */
+    unsigned frame;       /* 0: not said */
+} picture_origin;
 
-/* Writes the picture with a description of where it comes from; scene_hash is that of its text.
- * Returns an exit_code, having printed what failed. */
+/* Returns an exit_code, having printed what failed. */
 int write_picture(const lr_picture *picture, const char *path, lr_encoding encoding,
-                  const char *scene_hash, const char *settings, const char *pixel_hash);
+                  const picture_origin *origin);
 
 #endif

@@ -14,6 +14,7 @@ struct render_record;
 typedef struct look_values {
     const char *tone; /* NULL: not given */
     double white;     /* 0: not given */
+    bool denoise;
 } look_values;
 
 /* The lines of the table; `type` has a member `encoding` of encoding_values. */
@@ -27,12 +28,20 @@ typedef struct look_values {
              "(clipped at 1), reinhard, aces or agx; default: the\n"                               \
              "scene's",                                                                            \
      .also = "tonemap|tone-map|view-transform"},                                                   \
+        {.name = "white",                                                                          \
+         .kind = OPTION_REAL,                                                                      \
+         .offset = offsetof(type, encoding.look.white),                                            \
+         .value = "K",                                                                             \
+         .min = LR_WHITE_MIN,                                                                      \
+         .max = LR_WHITE_MAX,                                                                      \
+         .help = "white balance: light of this colour temperature, 1667\n"                         \
+                 "to 25000 kelvin, becomes white; default: the scene's",                           \
+         .also = "temperature|white-balance|kelvin"},                                              \
     {                                                                                              \
-        .name = "white", .kind = OPTION_REAL, .offset = offsetof(type, encoding.look.white),       \
-        .value = "K", .min = LR_WHITE_MIN, .max = LR_WHITE_MAX,                                    \
-        .help = "white balance: light of this colour temperature, 1667\n"                          \
-                "to 25000 kelvin, becomes white; default: the scene's",                            \
-        .also = "temperature|white-balance|kelvin"                                                 \
+        .name = "denoise", .kind = OPTION_FLAG, .offset = offsetof(type, encoding.look.denoise),   \
+        .help = "remove noise with Open Image Denoise, where it is\n"                              \
+                "installed; its bytes may differ between computers",                               \
+        .also = "denoiser|oidn"                                                                    \
     }
 
 /* Whether the flags suit the format. Returns an exit_code, having printed what is wrong. */

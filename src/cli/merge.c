@@ -1,6 +1,8 @@
 #include "cli/cli.h"
 #include "cli/encoding.h"
 #include "cli/output.h"
+#include "cli/progress.h"
+#include "cli/stats.h"
 
 #include <limits.h>
 #include <math.h>
@@ -33,6 +35,9 @@ static int check_values(const command *self, const values *v, char *const *parts
                         lr_encoding *encoding)
 {
     int code = choose_encoding(self, &v->encoding, encoding);
+    if (code == EXIT_FINE) {
+        code = check_writable(v->encoding.output);
+    }
     for (int i = 0; i < count && code == EXIT_FINE; i++) {
         if (same_file(v->encoding.output, parts[i])) {
             code = wrong_usage(self, "the output would replace a part");
@@ -41,32 +46,59 @@ static int check_values(const command *self, const values *v, char *const *parts
     return code == EXIT_FINE ? check_writable(v->encoding.output) : code;
 }
 
-static int merge(const values *v, const char *const *parts, int count, lr_encoding encoding)
+/* Writes the picture and says so. */
+static int write_merged(const values *v, const lr_picture *picture, const lr_merge_info *info,
+                        int count, lr_encoding encoding, const render_record *denoised)
 {
-    lr_error error = {0};
-    lr_picture picture;
-    lr_merge_info info;
-    char settings[sizeof info.settings + sizeof info.missing + 20];
-    lr_status status = lr_merge_parts(parts, (uint32_t)count, v->partial, &picture, &info, &error);
-    if (status != LR_OK) {
-        error.status = status;
-        return report_failure(&error);
-    }
-    const lr_scene_info scene = {.exposure = info.exposure, .tone = info.tone, .white = info.white};
+    char settings[sizeof info->settings + sizeof info->missing + 20];
+    const lr_scene_info scene = {
+        .exposure = info->exposure, .tone = info->tone, .white = info->white};
     finish_encoding(&v->encoding, &scene, &encoding);
-    snprintf(settings, sizeof settings, info.missing[0] ? "%s, without samples %s" : "%s",
-             info.settings, info.missing);
-    int code =
-        write_picture(&picture, v->encoding.output, encoding, info.scene_hash, settings, info.hash);
-    if (code == EXIT_FINE && info.missing[0]) {
-        print_warning("samples %s are missing", info.missing);
+    snprintf(settings, sizeof settings, info->missing[0] ? "%s, without samples %s" : "%s",
+             info->settings, info->missing);
+    const picture_origin origin = {
+        .scene_hash = info->scene_hash,
+        .settings = settings,
+        .pixel_hash = denoised->denoiser ? denoised->denoised_hash : info->hash,
+        .denoiser = denoised->denoiser,
+    };
+    int code = write_picture(picture, v->encoding.output, encoding, &origin);
+    if (code == EXIT_FINE && info->missing[0]) {
+        print_warning("samples %s are missing", info->missing);
     }
     if (code == EXIT_FINE && !v->quiet) {
         fprintf(stderr, "wrote %s, %u×%u, %u sample%s from %d part%s\n",
                 strcmp(v->encoding.output, "-") == 0 ? "standard output" : v->encoding.output,
-                (unsigned)picture.width, (unsigned)picture.height, (unsigned)info.samples,
-                info.samples == 1 ? "" : "s", count, count == 1 ? "" : "s");
+                (unsigned)picture->width, (unsigned)picture->height, (unsigned)info->samples,
+                info->samples == 1 ? "" : "s", count, count == 1 ? "" : "s");
     }
+    return code;
+}
+
+static int merge(const values *v, const char *const *parts, int count, const lr_encoding *encoding)
+{
+    lr_error error = {0};
+    lr_picture picture = {0};
+    lr_merge_info info;
+    lr_denoiser *denoiser = NULL;
+    render_record denoised = {0};
+    progress bar;
+    progress_start(&bar, v->quiet);
+    lr_status status = v->encoding.look.denoise ? lr_denoiser_open(&denoiser, &error) : LR_OK;
+    if (status == LR_OK) {
+        status = lr_merge_parts(parts, (uint32_t)count, v->partial, &picture, &info, &error);
+    }
+    if (status == LR_OK) {
+        status = denoise_picture(denoiser, &picture, &bar, &denoised, &error);
+    }
+    int code;
+    if (status == LR_OK) {
+        code = write_merged(v, &picture, &info, count, *encoding, &denoised);
+    } else {
+        error.status = status;
+        code = report_failure(&error);
+    }
+    lr_denoiser_close(denoiser);
     lr_picture_free(&picture);
     return code;
 }
@@ -81,7 +113,7 @@ static int run(const command *self, int argc, char **argv)
     }
     lr_encoding encoding = {0};
     int code = check_values(self, &v, argv, count, &encoding);
-    return code == EXIT_FINE ? merge(&v, (const char *const *)argv, count, encoding) : code;
+    return code == EXIT_FINE ? merge(&v, (const char *const *)argv, count, &encoding) : code;
 }
 
 const command command_merge = {

@@ -2,7 +2,6 @@
 #include "cli/encoding.h"
 #include "cli/frames.h"
 #include "cli/load.h"
-#include "cli/look.h"
 #include "cli/output.h"
 #include "cli/picture.h"
 #include "cli/progress.h"
@@ -21,10 +20,10 @@ typedef struct values {
     picture_values picture;
     option_rectangle crop;
     option_range sample_range;
-    double checkpoint_seconds, time;
+    double checkpoint_seconds, time, noise;
     int64_t tile, chunk;
     load_values load;
-    bool denoise, storage_loads, quiet, verbose;
+    bool storage_loads, quiet, verbose;
 } values;
 
 #define AT(member) .offset = offsetof(values, member)
@@ -42,6 +41,14 @@ static const option options[] = {
      .help = "render and write only this part of the picture, in\n"
              "pixels from its top left corner",
      .also = "region|window"},
+    {.name = "frames",
+     .kind = OPTION_TEXT,
+     AT(frames),
+     .value = "A-B",
+     .help = "render these frames, each to a file of its own:\n"
+             "-o frame-%04d.png; or to standard output, one PPM or\n"
+             "PNG behind the other, as video encoders read them",
+     .also = "animation|range"},
     {.name = "sample-range",
      .kind = OPTION_RANGE,
      AT(sample_range),
@@ -59,6 +66,15 @@ static const option options[] = {
      .help = "as many samples as fit in 500ms, 60s, 10m, 2h, ..., at\n"
              "least 1 and at most --spp; for --integrator path",
      .also = "seconds|limit|timeout"},
+    {.name = "noise",
+     .kind = OPTION_REAL,
+     AT(noise),
+     .value = "X",
+     .min = 0,
+     .max = 1,
+     .help = "no more samples where the noise is below X: 0.01 is\n"
+             "about one of 255 shades; at most --spp; for paths",
+     .also = "adaptive|threshold|error"},
     {.name = "checkpoint",
      .kind = OPTION_TEXT,
      AT(checkpoint),
@@ -66,20 +82,6 @@ static const option options[] = {
      .help = "keep what is traced in FILE, every 30 seconds and when\n"
              "interrupted; the same command goes on from there",
      .also = "resume|continue|save"},
-    {.name = "frames",
-     .kind = OPTION_TEXT,
-     AT(frames),
-     .value = "A-B",
-     .help = "render these frames, each to a file of its own:\n"
-             "-o frame-%04d.png; or to standard output, one PPM or\n"
-             "PNG behind the other, as video encoders read them",
-     .also = "animation|range"},
-    {.name = "denoise",
-     .kind = OPTION_FLAG,
-     AT(denoise),
-     .help = "remove noise with Open Image Denoise, where it is\n"
-             "installed; its bytes may differ between computers",
-     .also = "denoiser|oidn"},
     {.name = "stats",
      .kind = OPTION_TEXT,
      AT(stats),
@@ -135,50 +137,13 @@ static int check_part(const command *self, const values *v, const lr_encoding *e
         return wrong_usage(self, "--sample-range writes a part, which is an EXR file: -o FILE.exr");
     }
     const encoding_values *e = &v->encoding;
-    if (e->half || e->transfer || !isnan(e->exposure) || e->look.tone || e->look.white != 0) {
+    if (e->half || e->transfer || !isnan(e->exposure) || e->look.tone || e->look.white != 0 ||
+        e->look.denoise) {
         return wrong_usage(self,
                            "--sample-range writes exact sums: how they become a picture is for "
                            "lavaray merge to say");
     }
     return EXIT_FINE;
-}
-
-/* --frames, and where to. */
-static int check_frames(const command *self, const values *v, const lr_encoding *encoding)
-{
-    const char *output = v->encoding.output;
-    bool to_stdout = strcmp(output, "-") == 0;
-    frame_range range;
-    char path[PATH_MAX];
-    if (!frames_parse(v->frames, &range)) {
-        print_error("--frames must be A-B, such as 0-47, from 0 to %d, not '%.100s'; see lavaray "
-                    "render --help",
-                    FRAME_MAX, v->frames);
-        return EXIT_USAGE;
-    }
-    if (!to_stdout && !frames_named(output)) {
-        return wrong_usage(self, "with --frames the output needs one number: -o frame-%04d.png");
-    }
-    if (v->load.frame) {
-        return wrong_usage(self, "--frame is for a single picture, --frames for several");
-    }
-    if (v->stats) {
-        return wrong_usage(self, "--stats tells of a single picture, not of --frames");
-    }
-    if (v->checkpoint || v->sample_range.given) {
-        return wrong_usage(self, "--checkpoint and --sample-range are for a single picture, not "
-                                 "for --frames");
-    }
-    bool floats = encoding->format == LR_FORMAT_PFM || encoding->format == LR_FORMAT_EXR;
-    if (to_stdout && floats) {
-        return wrong_usage(self, "frames go to standard output as PPM or PNG");
-    }
-    if (!(frames_path(output, range.last, path, sizeof path) &&
-          frames_path(output, range.first, path, sizeof path))) {
-        print_error("%.100s: the path is too long", output);
-        return EXIT_FILE;
-    }
-    return check_writable(path);
 }
 
 /* No file would replace another. */
@@ -206,6 +171,43 @@ static int check_names(const command *self, const values *v, const char *scene)
     return EXIT_FINE;
 }
 
+/* What --frames means, and whether the first and the last can be written; others can then, too. */
+static int check_frames(const command *self, const values *v, const lr_encoding *encoding)
+{
+    const char *output = v->encoding.output;
+    bool to_stdout = strcmp(output, "-") == 0;
+    bool floats = encoding->format == LR_FORMAT_PFM || encoding->format == LR_FORMAT_EXR;
+    frame_range range;
+    if (!frames_parse(v->frames, &range)) {
+        print_error("--frames must be A-B, such as 0-47, from 0 to %d, not '%.100s'; see lavaray "
+                    "render --help",
+                    FRAME_MAX, v->frames);
+        return EXIT_USAGE;
+    }
+    if (!to_stdout && !frames_named(output)) {
+        return wrong_usage(self, "with --frames the output needs one number: -o frame-%04d.png");
+    }
+    if (v->load.frame) {
+        return wrong_usage(self, "--frame is for a single picture, --frames for several");
+    }
+    if (v->stats) {
+        return wrong_usage(self, "--stats tells of a single picture, not of --frames");
+    }
+    if (v->checkpoint) {
+        return wrong_usage(self, "--checkpoint is for a single picture, not for --frames");
+    }
+    if (to_stdout && floats) {
+        return wrong_usage(self, "frames go to standard output as PPM or PNG");
+    }
+    char path[PATH_MAX];
+    if (!frames_path(output, range.last, path, sizeof path) ||
+        !frames_path(output, range.first, path, sizeof path)) {
+        print_error("%.100s: the path is too long", output);
+        return EXIT_FILE;
+    }
+    return check_writable(path);
+}
+
 /* What the flags mean together, and whether the files can be written. */
 static int check_values(const command *self, const values *v, const char *scene,
                         lr_encoding *encoding)
@@ -214,17 +216,14 @@ static int check_values(const command *self, const values *v, const char *scene,
         return wrong_usage(self, "-q and -v contradict each other");
     }
     int code = choose_encoding(self, &v->encoding, encoding);
-    if (code == EXIT_FINE) {
-        code = v->frames ? check_frames(self, v, encoding) : check_writable(v->encoding.output);
-    }
-    if (code == EXIT_FINE && v->denoise && v->sample_range.given) {
-        return wrong_usage(self, "--denoise is for whole pictures, not for --sample-range");
-    }
     if (code == EXIT_FINE && v->sample_range.given) {
         code = check_part(self, v, encoding);
     }
     if (code == EXIT_FINE) {
         code = check_names(self, v, scene);
+    }
+    if (code == EXIT_FINE) {
+        code = v->frames ? check_frames(self, v, encoding) : check_writable(v->encoding.output);
     }
     if (code == EXIT_FINE && v->stats) {
         code = check_writable(v->stats);
@@ -244,6 +243,7 @@ static lr_render_options make_options(const values *v, progress *p)
         made.sample_range.count = v->sample_range.last - v->sample_range.first + 1;
     }
     made.seconds = v->time;
+    made.noise = v->noise;
     made.checkpoint = v->checkpoint;
     made.checkpoint_seconds = v->checkpoint_seconds;
     made.tile_size = (uint32_t)v->tile;
@@ -257,13 +257,13 @@ static lr_render_options make_options(const values *v, progress *p)
 /* problem: why the checkpoint could not be written, ""; NULL: nothing has been traced yet. */
 static int say_interrupted(const values *v, const char *problem)
 {
-    if (problem && problem[0]) {
+    if (v->frames) {
+        print_error("interrupted in frame %d, which is not written", (int)v->load.frame);
+    } else if (problem && problem[0]) {
         print_error("interrupted, and the checkpoint could not be written: %s", problem);
     } else if (problem && v->checkpoint && access(v->checkpoint, F_OK) == 0) {
         print_error("interrupted; %s holds what has been traced, the same command goes on from it",
                     v->checkpoint);
-    } else if (v->frames) {
-        print_error("interrupted in frame %d, which is not written", (int)v->load.frame);
     } else {
         print_error("interrupted, nothing written");
     }
@@ -275,18 +275,16 @@ static int write_result(const values *v, const lr_encoding *encoding, const lr_p
                         render_record *record)
 {
     double start = seconds_now();
-    char frame[32] = "", denoised[200] = "", settings[LR_SETTINGS_TEXT + 240];
-    if (v->load.frame) {
-        snprintf(frame, sizeof frame, ", frame %d", (int)v->load.frame);
-    }
-    if (record->denoiser) {
-        snprintf(denoised, sizeof denoised, ", denoised by %.150s", record->denoiser);
-    }
-    snprintf(settings, sizeof settings, "%s%s%s", record->stats.settings, frame, denoised);
-    const char *hash = record->denoiser ? record->denoised_hash : record->stats.hash;
-    int code = v->sample_range.given ? EXIT_FINE
-                                     : write_picture(picture, v->encoding.output, *encoding,
-                                                     record->scene_hash, settings, hash);
+    const picture_origin origin = {
+        .scene_hash = record->scene_hash,
+        .settings = record->stats.settings,
+        .pixel_hash = record->denoiser ? record->denoised_hash : record->stats.hash,
+        .denoiser = record->denoiser,
+        .frame = (unsigned)v->load.frame,
+    };
+    int code = v->sample_range.given
+                   ? EXIT_FINE
+                   : write_picture(picture, v->encoding.output, *encoding, &origin);
     if (code == EXIT_FINE && v->checkpoint) {
         unlink(v->checkpoint); /* it may never have been written */
     }
@@ -359,7 +357,7 @@ typedef struct job {
 static int open_device(job *j)
 {
     lr_error error = {0};
-    if (j->v.denoise && lr_denoiser_open(&j->denoiser, &error)) {
+    if (j->v.encoding.look.denoise && lr_denoiser_open(&j->denoiser, &error)) {
         progress_clear(&j->progress);
         return report_failure(&error);
     }
@@ -405,10 +403,10 @@ static int render_picture(job *j, double start, lr_scene **scene)
         print_warning("nothing in %s has keys: all frames are the same", j->path);
     }
     record.scene_hash = scene_info.sha256;
-    lr_encoding encoding = j->encoding;
-    finish_encoding(&v->encoding, &scene_info, &encoding);
     record.exposure =
         isnan(v->encoding.exposure) ? (double)scene_info.exposure : v->encoding.exposure;
+    lr_encoding encoding = j->encoding;
+    finish_encoding(&v->encoding, &scene_info, &encoding);
     record.tone = lr_tone_name(encoding.tone);
     record.white = encoding.white;
     code = j->device ? EXIT_FINE : open_device(j);

@@ -38,7 +38,10 @@ static const char *output_name(const render_record *r)
 /* Such as "4 samples"; "samples 0-15 of 64" or "sample 5 of 64" for a part. */
 static void format_samples(const lr_render_stats *s, char text[64])
 {
-    if (s->sample_count < s->samples && s->sample_count == 1) {
+    if (s->least_samples < s->most_samples) {
+        snprintf(text, 64, "%.1f samples (%u to %u)", s->mean_samples, (unsigned)s->least_samples,
+                 (unsigned)s->most_samples);
+    } else if (s->sample_count < s->samples && s->sample_count == 1) {
         snprintf(text, 64, "sample %u of %u", (unsigned)s->first_sample, (unsigned)s->samples);
     } else if (s->sample_count < s->samples) {
         snprintf(text, 64, "samples %u-%u of %u", (unsigned)s->first_sample,
@@ -164,15 +167,21 @@ static json_t *record_json(const render_record *r)
     if (r->white != 0) {
         json_object_set_new(picture, "white", json_real(r->white));
     }
-    if (r->denoiser) {
-        json_object_set_new(picture, "denoised",
-                            json_pack("{s:s, s:s, s:f}", "by", r->denoiser, "sha256",
-                                      r->denoised_hash, "seconds", r->denoise_seconds));
+    if (s->least_samples < s->most_samples) {
+        json_object_set_new(picture, "samples_traced",
+                            json_pack("{s:f, s:I, s:I}", "mean", s->mean_samples, "least",
+                                      (json_int_t)s->least_samples, "most",
+                                      (json_int_t)s->most_samples));
     }
     if (s->sample_count < s->samples) {
         json_object_set_new(picture, "sample_range",
                             json_pack("[I,I]", (json_int_t)s->first_sample,
                                       (json_int_t)s->first_sample + s->sample_count - 1));
+    }
+    if (r->denoiser) {
+        json_object_set_new(picture, "denoised",
+                            json_pack("{s:s, s:s, s:f}", "by", r->denoiser, "sha256",
+                                      r->denoised_hash, "seconds", r->denoise_seconds));
     }
     json_t *rays = json_pack(
         "{s:o, s:o, s:o, s:o, s:o, s:I}", "primary", rays_json(s->primary.traced, s->primary.hit),

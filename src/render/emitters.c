@@ -218,18 +218,14 @@ static double radius_of(const lr_scene *scene, const lr_primitive *primitives)
     return fmin(fmax(radius, 1e-12), 1e12);
 }
 
-/* About how much of the light's power arrives in the scene. */
+/* About how much of the light's power arrives in the scene; a spot counts as if it shone all
+ * around, for where it does shine it is as bright. */
 static double power_of(const lr_light *light, double radius)
 {
-    double value = PI * mean_of(light->color) * light->intensity, sine, cosine;
+    double value = PI * mean_of(light->color) * light->intensity;
     if (light->kind == LR_LIGHT_DIRECTIONAL)
         return value * PI * radius * radius;
-    double share = 4 * PI;
-    if (light->kind == LR_LIGHT_SPOT) {
-        lr_sincos_degrees(light->angle, &sine, &cosine);
-        share = 2 * PI * (1 - cosine);
-    }
-    return value * share * lr_exp2((2 - light->falloff) * lr_log2(radius));
+    return value * 4 * PI * lr_exp2((2 - light->falloff) * lr_log2(radius));
 }
 
 static void add_light(lr_emitters *list, uint32_t kind, uint32_t index, double power)

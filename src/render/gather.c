@@ -5,6 +5,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "render/noise.h"
+
 #define CHECKPOINT_SECONDS 30.0
 
 /* A checkpoint that takes long to write is written the more seldom, by this. */
@@ -20,6 +22,7 @@ typedef struct gather {
     const lr_render_options *options;
     lr_sums *sums;
     lr_render_stats *stats;
+    const lr_noise *noise;  /* NULL, or which blocks go on */
     double done, total;     /* samples of all pixels */
     double running;         /* of the rectangle that is being traced */
     double next_checkpoint; /* lr_now() */
@@ -152,22 +155,34 @@ static lr_status trace(gather *g, const rectangle *r, uint32_t from, uint32_t to
     return LR_OK;
 }
 
-/* The samples that all pixels of r have, taking those with `target` and more for equal; UINT32_MAX:
- * they have different numbers. */
+/* The samples that a pixel has; `target` where that is enough. */
+static uint32_t count_at(const gather *g, uint32_t x, uint32_t y, uint32_t target)
+{
+    if (g->noise && lr_noise_stopped(g->noise, x, y))
+        return target;
+    return at_most(lr_sums_pixel(g->sums, x, y)[LR_FILM_SAMPLES], target);
+}
+
+/* ... of all pixels of r; UINT32_MAX: they have different numbers. */
 static uint32_t common_count(const gather *g, const rectangle *r, uint32_t target)
 {
-    uint32_t common = at_most(lr_sums_pixel(g->sums, r->x, r->y)[LR_FILM_SAMPLES], target);
-    for (uint32_t y = 0; y < r->height; y++) {
-        const uint32_t *pixel = lr_sums_pixel(g->sums, r->x, r->y + y);
-        for (uint32_t x = 0; x < r->width; x++, pixel += LR_FILM_WORDS)
-            if (at_most(pixel[LR_FILM_SAMPLES], target) != common)
+    uint32_t common = count_at(g, r->x, r->y, target);
+    for (uint32_t y = r->y; y < r->y + r->height; y++)
+        for (uint32_t x = r->x; x < r->x + r->width; x++)
+            if (count_at(g, x, y, target) != common)
                 return UINT32_MAX;
-    }
     return common;
 }
 
-/* Brings the pixels of r to `target` samples, in halves where they have different numbers: those of
- * a checkpoint whose tiles were others. */
+/* About the half of a side, so that pieces are whole blocks while they are larger than one. */
+static uint32_t half_of(uint32_t side)
+{
+    uint32_t half = side / 2, rest = half % LR_NOISE_BLOCK;
+    return side > LR_NOISE_BLOCK && rest ? half - rest + LR_NOISE_BLOCK : half;
+}
+
+/* Brings the pixels of r to `target` samples, in halves where they have different numbers: at the
+ * edge of blocks that go on, or those of a checkpoint whose tiles were others. */
 static lr_status reach(gather *g, rectangle r, uint32_t target, lr_error *error)
 {
     uint32_t from = common_count(g, &r, target);
@@ -177,11 +192,11 @@ static lr_status reach(gather *g, rectangle r, uint32_t target, lr_error *error)
         return trace(g, &r, from, target, error);
     rectangle first = r, second = r;
     if (r.width >= r.height) {
-        first.width = r.width / 2;
+        first.width = half_of(r.width);
         second.x += first.width;
         second.width -= first.width;
     } else {
-        first.height = r.height / 2;
+        first.height = half_of(r.height);
         second.y += first.height;
         second.height -= first.height;
     }
@@ -202,15 +217,15 @@ static lr_status reach_all(gather *g, uint32_t target, lr_error *error)
     return status;
 }
 
-/* Passes that bring each tile as many samples as are traced at once. */
-static lr_status reach_in_passes(gather *g, lr_error *error)
+/* Passes from `from` samples a pixel to `to` that bring each tile as many as are traced at once. */
+static lr_status reach_in_passes(gather *g, uint32_t from, uint32_t to, lr_error *error)
 {
     uint32_t size = g->wavefront->tile_size, step = g->wavefront->chunk_rays / (size * size);
     step = step > PASS_SAMPLES ? step : PASS_SAMPLES;
     lr_status status = LR_OK;
-    for (uint32_t target = 0; target < g->sums->count && !status;) {
-        target = g->sums->count - target > step ? target + step : g->sums->count;
-        status = reach_all(g, target, error);
+    while (from < to && !status) {
+        from = to - from > step ? from + step : to;
+        status = reach_all(g, from, error);
     }
     return status;
 }
@@ -245,9 +260,32 @@ static lr_status reach_with_checkpoints(gather *g, lr_error *error)
     g->stats->resumed = lr_sums_done(g->sums);
     g->done = g->stats->resumed * g->total;
     g->next_checkpoint = lr_now() + checkpoint_seconds(g);
-    status = reach_in_passes(g, error);
+    status = reach_in_passes(g, 0, g->sums->count, error);
     if (status && g->done > g->stats->resumed * g->total)
         write_checkpoint(g);
+    return status;
+}
+
+/* Doubles the samples of the blocks that are too noisy until none is, or all are used up. */
+static lr_status reach_quiet(gather *g, lr_error *error)
+{
+    lr_noise noise;
+    uint32_t most = g->sums->count, reached = 0;
+    uint64_t left = (uint64_t)g->sums->width * g->sums->height;
+    lr_status status = lr_noise_create(&noise, g->sums, error);
+    g->noise = &noise;
+    while (!status && left > 0 && reached < most) {
+        uint32_t next = at_most(reached ? 2 * reached : LR_NOISE_FIRST / 2, most);
+        status = reach_in_passes(g, reached, next, error);
+        if (!status && next >= LR_NOISE_FIRST && next < most)
+            left = lr_noise_decide(&noise, g->sums, 1e-6 * g->settings->noise);
+        if (!status && next < most)
+            lr_noise_keep(&noise, g->sums);
+        reached = next;
+        g->total = g->done + (double)left * (most - reached);
+    }
+    g->noise = NULL;
+    lr_noise_free(&noise);
     return status;
 }
 
@@ -265,6 +303,8 @@ lr_status lr_gather(lr_wavefront *wavefront, const lr_settings *settings,
     };
     if (options->seconds > 0)
         return reach_in_time(&g, error);
+    if (settings->noise)
+        return reach_quiet(&g, error);
     return options->checkpoint ? reach_with_checkpoints(&g, error)
                                : reach_all(&g, sums->count, error);
 }

@@ -22,6 +22,7 @@ typedef struct lr_settings {
     uint32_t width, height, samples, depth, seed;
     uint32_t crop_x, crop_y, crop_width, crop_height;
     uint32_t first_sample, sample_count; /* of the samples: which are traced */
+    uint32_t noise; /* that may stay, in millionths; 0: all samples are traced */
     const lr_camera *camera;
     lr_integrator integrator;
     lr_filter filter;

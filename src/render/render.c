@@ -52,6 +52,8 @@ static void complete_stats(const job *j, const lr_picture *picture, lr_render_st
     stats->samples = j->settings.samples;
     stats->first_sample = j->settings.first_sample;
     stats->sample_count = j->settings.sample_count;
+    if (!stats->most_samples)
+        stats->mean_samples = stats->least_samples = stats->most_samples = stats->sample_count;
     stats->depth = j->settings.depth;
     stats->seed = j->settings.seed;
     stats->integrator = j->settings.integrator;
@@ -123,13 +125,32 @@ static lr_status render_tiles(const job *j, lr_picture *picture, lr_error *error
     return status;
 }
 
+/* The samples of the pixels; where they differ in number. */
+static void count_samples(const lr_sums *sums, lr_render_stats *stats)
+{
+    size_t pixels = (size_t)sums->width * sums->height;
+    uint64_t total = 0;
+    stats->least_samples = UINT32_MAX;
+    for (size_t i = 0; i < pixels; i++) {
+        uint32_t count = sums->film[i * LR_FILM_WORDS + LR_FILM_SAMPLES];
+        total += count;
+        if (count < stats->least_samples)
+            stats->least_samples = count;
+        if (count > stats->most_samples)
+            stats->most_samples = count;
+    }
+    stats->mean_samples = (double)total / (double)pixels;
+}
+
 /* The same over the sums of the whole picture, which are left in *sums. */
 static lr_status render_sums(job *j, const lr_scene *scene, lr_sums *sums, lr_picture *picture,
-                             lr_error *error)
+                             lr_render_stats *stats, lr_error *error)
 {
     lr_status status = lr_sums_create(sums, scene, &j->settings, j->options, error);
     if (!status)
         status = lr_gather(j->wavefront, &j->settings, j->options, sums, j->begun, error);
+    if (!status)
+        count_samples(sums, stats);
     if (!status && j->options->seconds > 0)
         j->settings.samples = j->settings.sample_count = sums->count;
     if (!status)
@@ -140,7 +161,7 @@ static lr_status render_sums(job *j, const lr_scene *scene, lr_sums *sums, lr_pi
 /* Whether a render goes over the picture more than once. */
 static bool needs_sums(const lr_render_options *options)
 {
-    return options->checkpoint || options->seconds > 0;
+    return options->checkpoint || options->seconds > 0 || options->noise > 0;
 }
 
 lr_status lr_render(lr_device *device, const lr_scene *scene, const lr_render_options *options,
@@ -155,7 +176,7 @@ lr_status lr_render(lr_device *device, const lr_scene *scene, const lr_render_op
     if (!status)
         status = make_picture(&j, picture, error);
     if (!status && needs_sums(j.options))
-        status = render_sums(&j, scene, &sums, picture, error);
+        status = render_sums(&j, scene, &sums, picture, stats, error);
     else if (!status)
         status = render_tiles(&j, picture, error);
     if (!status)
@@ -179,7 +200,7 @@ lr_status lr_render_part(lr_device *device, const lr_scene *scene, const lr_rend
     if (!status)
         status = make_picture(&j, &picture, error);
     if (!status)
-        status = render_sums(&j, scene, &sums, &picture, error);
+        status = render_sums(&j, scene, &sums, &picture, stats, error);
     if (!status)
         status = lr_sums_write(&sums, path, error);
     if (!status)

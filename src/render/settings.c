@@ -60,12 +60,13 @@ lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_
                                           : (lr_integrator)(scene->image.integrator + 1),
         .first_sample = options->sample_range.first,
         .sample_count = options->sample_range.count,
+        .noise = (uint32_t)(options->noise * 1e6 + 0.5),
         .filter = options->filter,
         .leaf_size = options->leaf_size,
         .threads = options->threads,
     };
     s->samples = options->samples ? options->samples : scene->image.samples;
-    if (!options->samples && options->seconds > 0)
+    if (!options->samples && (options->seconds > 0 || options->noise > 0))
         s->samples = SAMPLES_MAX;
     if (!s->samples)
         s->samples = lr_default_samples(s->integrator);
@@ -75,6 +76,17 @@ lr_status lr_settle(const lr_scene *scene, const lr_render_options *options, lr_
     if (s->samples > SAMPLES_MAX)
         return lr_fail(error, LR_ERROR_ARGUMENT, "%u samples are over %d (--spp)", s->samples,
                        SAMPLES_MAX);
+    if (!(options->noise >= 0 && options->noise <= 1) || (options->noise > 0 && !s->noise))
+        return lr_fail(error, LR_ERROR_ARGUMENT, "the noise %g is not from 0.000001 to 1 (--noise)",
+                       options->noise);
+    if (s->noise && s->integrator != LR_INTEGRATOR_PATH)
+        return lr_fail(error, LR_ERROR_ARGUMENT,
+                       "an end by noise (--noise) needs --integrator path: where a whitted sample "
+                       "lies depends on how many there will be");
+    if (s->noise && (options->checkpoint || options->sample_range.count || options->seconds > 0))
+        return lr_fail(error, LR_ERROR_ARGUMENT,
+                       "an end by noise (--noise) goes with none of --time, --checkpoint and "
+                       "--sample-range");
     if (options->seconds > 0 && s->integrator != LR_INTEGRATOR_PATH)
         return lr_fail(error, LR_ERROR_ARGUMENT,
                        "a time limit (--time) needs --integrator path: where a whitted sample lies "
@@ -125,6 +137,9 @@ void lr_settings_describe(const lr_settings *settings, const lr_render_options *
                                  s->crop_y, s->crop_width, s->crop_height);
     if (options->camera)
         used += (size_t)snprintf(text + used, size - used, ", camera %.200s", options->camera);
+    if (s->noise)
+        used += (size_t)snprintf(text + used, size - used, ", noise %u.%06u", s->noise / 1000000,
+                                 s->noise % 1000000);
     if (options->filter)
         snprintf(text + used, size - used, ", filter %s", filters[options->filter]);
 }

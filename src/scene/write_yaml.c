@@ -74,24 +74,24 @@ static void put_colors(FILE *out, const lr_color colors[2])
     fputc(']', out);
 }
 
-/* Whether a derived value was not given: it is zero then, where zero cannot be given. */
-static bool is_absent(const lr_field *field, const void *value)
+/* Whether the stored value stands for one that other keys decide: 0, where the field itself begins
+ * above it. */
+static bool is_left_open(const lr_field *field, const void *value)
 {
-    if (!(field->minimum > 0))
-        return false;
-    if (field->type == LR_FIELD_NUMBER)
-        return *(const double *)value == 0;
-    return field->type == LR_FIELD_INTEGER && *(const uint32_t *)value == 0;
+    if (field->type == LR_FIELD_INTEGER)
+        return field->minimum > 0 && *(const uint32_t *)value == 0;
+    return field->type == LR_FIELD_NUMBER && *(const double *)value == 0 &&
+           (field->minimum > 0 || (field->minimum == 0 && field->flags & LR_ABOVE));
 }
 
 /* Whether the stored value is the field's default. */
 static bool is_default(const lr_field *field, const void *value)
 {
     const double *d = field->fallback, *v = value;
+    if (field->flags & LR_DERIVED)
+        return is_left_open(field, value);
     if (field->flags & LR_REQUIRED)
         return false;
-    if (field->flags & LR_DERIVED)
-        return is_absent(field, value);
     switch (field->type) {
     case LR_FIELD_NUMBER:
         return *v == d[0];

@@ -15,8 +15,8 @@ for command in render merge explain devices doctor validate info convert schema 
 done
 expect 0 "$lavaray" render --help
 says out '^For tests: the picture does not depend on these:'
-for flag in output format size spp depth seed maxval transfer half exposure tone white denoise camera crop sample-range \
-    time checkpoint device stats quiet \
+for flag in output format size spp depth seed maxval transfer half exposure tone white denoise camera crop \
+    sample-range time noise checkpoint device stats quiet \
     verbose tile chunk storage-loads; do
     says out "--$flag( |$)"
 done

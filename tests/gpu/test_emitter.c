@@ -5,6 +5,7 @@
 
 #include "emitter.spv.h"
 #include "render/pack.h"
+#include "scene/sky.h"
 #include "unit/temporary_folder.h"
 
 #define COUNT 1048576u
@@ -575,6 +576,39 @@ static void test_picture(void **state)
     }
 }
 
+/* On the ground falls what the sky's and the sun's radiance come to, and the sun's samples are
+ * where it is to be seen. */
+static void test_sky(void **state)
+{
+    double height = 0.6, across = 0.8, expected = 0;
+    lr_sky sky = lr_sky_make(4, height);
+    for (int i = 0; i < 400; i++)
+        for (int k = 0; k < 400; k++) {
+            double h = (i + 0.5) / 400, azimuth = 2 * PI * (k + 0.5) / 400;
+            double cosine = h * height + sqrt(1 - h * h) * across * cos(azimuth);
+            expected += lr_sky_radiance(&sky, h, cosine).y * h * 2 * PI / 160000;
+        }
+    double sun = lr_sun_radiance(&sky).y, half = LR_SUN_ANGLE / 2 * PI / 180;
+    double by_sun = sun * 2 * PI * (1 - cos(half)) * height;
+    lr_packed_scene packed = pack(
+        "background: {sky: [0.8, 0.6, 0], turbidity: 4, intensity: 2}\nobjects: [sphere: {}]\n");
+    assert_int_equal(packed.constants[LR_SPEC_SUN], 1);
+    ask_around(*state, &packed);
+    double air = 0, all = 0, suns = 0;
+    for (uint32_t i = 0; i < COUNT; i++) {
+        const float *wi = found[i].wi;
+        double each = found[i].value[1] * fmax(wi[1], 0) / COUNT;
+        bool in_sun = wi[0] * 0.8 + wi[1] * 0.6 > cos(half) - 1e-7;
+        all += each;
+        air += in_sun ? 0 : each;
+        suns += in_sun;
+    }
+    assert_near(air, 2 * expected, 0.01 * 2 * expected);
+    assert_near(all - air, 2 * by_sun, 0.003 * 2 * by_sun);
+    assert_in_range((uint64_t)suns, COUNT / 4, COUNT);
+    lr_packed_scene_free(&packed);
+}
+
 /* ---- In pictures ---------------------------------------------------------------------------- */
 
 /* A matt floor below a lamp, where half of what arrives is also found by chance. */
@@ -602,17 +636,12 @@ static void test_floor(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_flat),
-        cmocka_unit_test(test_sphere),
-        cmocka_unit_test(test_box_and_mesh),
-        cmocka_unit_test(test_sides),
-        cmocka_unit_test(test_lights),
-        cmocka_unit_test(test_choice),
-        cmocka_unit_test(test_pdf),
-        cmocka_unit_test(test_spread),
-        cmocka_unit_test(test_picture),
-        cmocka_unit_test(test_floor),
-        cmocka_unit_test(test_validation_is_silent),
+        cmocka_unit_test(test_flat),         cmocka_unit_test(test_sphere),
+        cmocka_unit_test(test_box_and_mesh), cmocka_unit_test(test_sides),
+        cmocka_unit_test(test_lights),       cmocka_unit_test(test_choice),
+        cmocka_unit_test(test_pdf),          cmocka_unit_test(test_spread),
+        cmocka_unit_test(test_picture),      cmocka_unit_test(test_sky),
+        cmocka_unit_test(test_floor),        cmocka_unit_test(test_validation_is_silent),
     };
     return cmocka_run_group_tests(tests, set_up, teardown);
 }

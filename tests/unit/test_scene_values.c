@@ -171,8 +171,8 @@ static void test_lights(void **state)
         parse_good("camera: {}\nlights:\n- point: {position: [1, 2, 3]}\n"
                    "- point: {position: [1, 2, 3], color: [1, 2, 3], intensity: 60, falloff: 1.5, "
                    "shadows: false}\n"
-                   "- directional: {direction: [0, -2, 0], intensity: 3}\n"
-                   "- spot: {position: [1, 2, 3], to: [1, 0, 3], angle: 20}\n"
+                   "- directional: {direction: [0, -2, 0], intensity: 3, angle: 0.53}\n"
+                   "- spot: {position: [1, 2, 3], to: [1, 0, 3], angle: 20, radius: 0.25}\n"
                    "- spot: {position: [1, 2, 3], direction: [1, 0, 0], inner: 5}\n"
                    "objects: [{sphere: {}}]\n");
     assert_int_equal(s->light_count, 5);
@@ -191,6 +191,9 @@ static void test_lights(void **state)
     assert_int_equal(l[2].kind, LR_LIGHT_DIRECTIONAL);
     assert_vec(l[2].direction, 0, -2, 0);
     assert_near(l[2].falloff, 0, 0);
+    assert_near(l[2].angle, 0.53, 0);
+    assert_near(l[0].radius, 0, 0);
+    assert_near(l[3].radius, 0.25, 0);
     assert_int_equal(l[3].kind, LR_LIGHT_SPOT);
     assert_vec(l[3].direction, 0, -2, 0);
     assert_near(l[3].angle, 20, 0);
