@@ -23,8 +23,10 @@
 
 layout(local_size_x = LR_GROUP_SIZE) in;
 
-// Bounces after which paths may end by chance.
+// Bounces after which paths may end by chance, and how faint, 1 / roulette_margin, they must be: of what
+// was tried on the Cornell box this takes the least time to a given noise (docs/performance.md).
 const uint roulette_from = 3u;
+const float roulette_margin = 2.0;
 
 // The weight of what one of two ways found with density a, the other with b; 1 if only the first can.
 float power_heuristic(float a, float b)
@@ -153,7 +155,7 @@ void main()
     vec3 side = through ? -here.n : here.n;
     vec3 arrived = weight;
     weight = arrived * next.weight;
-    float survives = depth < roulette_from ? 1.0 : min(brightest(weight), 1.0);
+    float survives = depth < roulette_from ? 1.0 : min(brightest(weight) * roulette_margin, 1.0);
     bool goes_on = scatters && next.kind != 0u && ex_dot(wi, side) > 0.0 &&
                    !(brightest(weight) < LR_WEIGHT_MIN) && !(brightest(weight) < frame.min_weight) &&
                    chances.x < survives;
