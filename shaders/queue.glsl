@@ -4,7 +4,13 @@
 
 #include "bindings.glsl"
 
-const uint ray_rows = has_paths ? 5u : 4u;
+uint ray_rows()
+{
+    uint rows = 4u;
+    if (has_paths)
+        rows = 5u;
+    return rows;
+}
 
 uvec4 ray_media(gpu_ray ray)
 {
@@ -29,7 +35,7 @@ uvec4 ray_row(uint row)
 
 gpu_ray load_ray(uint index)
 {
-    uint at = ray_rows * index;
+    uint at = ray_rows() * index;
     uvec4 a = ray_row(at), b = ray_row(at + 1u), c = ray_row(at + 2u), media = uvec4(0u);
     if (has_media)
         media = ray_row(at + 3u);
@@ -44,7 +50,7 @@ uvec4 pack_row(vec3 v, uint word)
 
 void store_ray(uint index, gpu_ray ray)
 {
-    uint at = ray_rows * index;
+    uint at = ray_rows() * index;
     rays_out[at] = pack_row(ray.origin, ray.pixel);
     rays_out[at + 1u] = pack_row(ray.direction, ray.state);
     uint note = 0u;
@@ -57,13 +63,13 @@ void store_ray(uint index, gpu_ray ray)
 
 gpu_path load_path(uint index)
 {
-    uvec4 a = ray_row(ray_rows * index + 4u);
+    uvec4 a = ray_row(ray_rows() * index + 4u);
     return gpu_path(a.x, a.y, uintBitsToFloat(a.z), uintBitsToFloat(a.w));
 }
 
 void store_path(uint index, gpu_path path)
 {
-    rays_out[ray_rows * index + 4u] =
+    rays_out[ray_rows() * index + 4u] =
         uvec4(path.pixel, path.order, floatBitsToUint(path.pdf), floatBitsToUint(path.distance));
 }
 

@@ -16,17 +16,23 @@ uvec4 shadow_row(uint row)
     return value;
 }
 
-const uint shadow_rows = has_paths ? 3u : 2u;
+uint shadow_rows()
+{
+    uint rows = 2u;
+    if (has_paths)
+        rows = 3u;
+    return rows;
+}
 
 gpu_shadow_ray load_shadow_ray(uint index)
 {
-    uvec4 a = shadow_row(shadow_rows * index), b = shadow_row(shadow_rows * index + 1u);
+    uvec4 a = shadow_row(shadow_rows() * index), b = shadow_row(shadow_rows() * index + 1u);
     return gpu_shadow_ray(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w);
 }
 
 gpu_shadow_way load_shadow_way(uint index)
 {
-    uvec4 a = shadow_row(shadow_rows * index + 2u);
+    uvec4 a = shadow_row(shadow_rows() * index + 2u);
     return gpu_shadow_way(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w));
 }
 
@@ -44,7 +50,7 @@ void send_light(gpu_shadow_ray ray, gpu_shadow_way way, bool wanted)
         atomicAdd(cells[segment * LR_CELLS + cell_of(ray.origin)], 1u);
     // The host checks that no segment ran over.
     if (wanted && slot < work.shadow_room) {
-        uint at = shadow_rows * (begin + slot);
+        uint at = shadow_rows() * (begin + slot);
         shadow_rays_queue[at] = pack_row(ray.origin, ray.pixel);
         shadow_rays_queue[at + 1u] = pack_row(ray.value, ray.light);
         if (has_paths)

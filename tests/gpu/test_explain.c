@@ -74,8 +74,11 @@ static void check_tree(const lr_explanation *x)
 static void check_scene(lr_device *device, const char *path, bool single_rays)
 {
     enum { WIDTH = 24, HEIGHT = 18, SAMPLES = 2 };
-    lr_render_options options = {
-        .width = WIDTH, .height = HEIGHT, .samples = SAMPLES, .single_rays = single_rays};
+    lr_render_options options = {.width = WIDTH,
+                                 .height = HEIGHT,
+                                 .samples = SAMPLES,
+                                 .single_rays = single_rays,
+                                 .integrator = LR_INTEGRATOR_WHITTED};
     lr_scene *scene = load(path);
     picture p;
     MUST(lr_render(device, scene, &options, &p.image, &p.stats, error));
