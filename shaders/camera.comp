@@ -28,6 +28,8 @@ void main()
         within = sample_pair(key, pair_pixel);
     else
         within = sample_position(pixel, number);
+    if (has_inspect && (hidden(frame.inspect) & LR_GPU_INSPECT_PATHS) != 0u)
+        within = sample_pair(key, pair_pixel);
     camera_ray ray;
     if (has_lens)
         ray = lens_ray(vec2(pixel) + filtered_position(within), sample_pair(key, pair_lens),

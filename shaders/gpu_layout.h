@@ -601,6 +601,14 @@ LR_ROWS(gpu_frame, 30)
 #define LR_GPU_INSPECT_OBJECT 3u
 #define LR_GPU_INSPECT_RAYS 4u
 #define LR_GPU_INSPECT_RAY 0.015625 /* 1/64: what a ray adds */
+#define LR_GPU_INSPECT_ALBEDO 5u
+#define LR_GPU_INSPECT_SHIFTED_NORMAL 6u /* n + 1; 1 where there is nothing */
+#define LR_GPU_INSPECT_DISTANCE 7u       /* red: in metres; green: 1 where there is something */
+#define LR_GPU_INSPECT_POSITION 8u       /* max(p, 0) */
+#define LR_GPU_INSPECT_NEGATIVE_POSITION 9u /* max(-p, 0) */
+#define LR_GPU_INSPECT_NUMBER 10u /* of the object + 1: its lower 16 bits in red, the others green */
+#define LR_GPU_INSPECT_KIND 15u
+#define LR_GPU_INSPECT_PATHS 16u /* added: samples lie in their pixel where those of paths do */
 #define LR_CELL_BITS 5 /* cells along a side, as a power of two */
 #define LR_CELLS 32768u
 
@@ -642,7 +650,8 @@ struct gpu_ray {
     vec3 direction; /* unit */
     uint state;
     vec3 weight;
-    uint note;   /* of the ray that it comes from, in kernels that explain */
+    uint note;   /* of the ray that it comes from, in kernels that explain; in those that inspect
+                    the bits of its length */
     uint media0; /* only in scenes with media: ranks of the media around the origin, two a word, in
                     no order, 0: none */
     uint media1;

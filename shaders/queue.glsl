@@ -56,6 +56,8 @@ void store_ray(uint index, gpu_ray ray)
     uint note = 0u;
     if (explains)
         note = ray.note;
+    if (has_inspect)
+        note = ray.note;
     rays_out[at + 2u] = pack_row(ray.weight, note);
     if (has_media)
         rays_out[at + 3u] = ray_media(ray);

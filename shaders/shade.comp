@@ -161,6 +161,8 @@ void main()
             note_surface(s.object, s.position, s.normal, lit_by, ray.direction, color, lit);
         }
     }
+    if (has_inspect)
+        noted_ray = floatBitsToUint(inspected_distance(ray, hit.t));
     if (has_scatter) {
         bool visible = scatter(ray, weight, s, n, lit_by, ids, m, at.absent, first_lights);
         lit = lit && visible;
@@ -171,8 +173,9 @@ void main()
     vec3 emission = emission_of(m, ray.direction, s.normal);
     vec3 own = weight * (m.ambient * color + emission);
     if (has_inspect) {
-        if (first_lights && !at.absent)
-            film_accumulate(sum, inspected_hit(ray, hit.t, s.object, lit_by));
+        boundary sides = boundary_at(ray, s, ids, m.ior, at.absent);
+        if (first_lights)
+            film_accumulate(sum, inspected_hit(ray, hit.t, at, sides));
         lit = lit && counts_rays();
     } else if (lit && first_lights) {
         film_accumulate(sum, own);

@@ -47,7 +47,7 @@ void main()
             film_accumulate(sum, fog);
         vec3 beyond = weight * background(ray.direction);
         if (has_inspect)
-            beyond = inspected_rays(1u);
+            beyond = inspected_beyond(ray);
         film_accumulate(sum, beyond);
         film_add(ray.pixel, sum);
         if (explains) {

@@ -398,6 +398,7 @@ typedef struct lr_render_stats {
     /* What all threads computed meanwhile, those of a software driver with them; trace_cpu_seconds
      * has the reading back in it. */
     double build_cpu_seconds, upload_cpu_seconds, compile_cpu_seconds, trace_cpu_seconds;
+    double layers_seconds;       /* what lr_render_layers took once it had the picture */
     double longest_pass_seconds; /* the longest wait for the device; a watchdog may end long ones */
     char hash[65];               /* of the picture; see lr_picture_hash */
 } lr_render_stats;
@@ -405,6 +406,40 @@ typedef struct lr_render_stats {
 /* Renders the scene; the caller frees *picture. stats may be NULL. */
 lr_status lr_render(lr_device *device, const lr_scene *scene, const lr_render_options *options,
                     lr_picture *picture, lr_render_stats *stats, lr_error *error);
+
+/* What lr_render_layers tells of a picture's pixels beside their light. What is seen is what the
+ * camera's rays meet first: mirrors and glass, not what shows in them. */
+typedef enum lr_aov {
+    LR_AOV_ALBEDO,   /* RGB: the share of light that comes back or through, at most 1 */
+    LR_AOV_NORMAL,   /* XYZ: the mean of unit vectors that face the camera, in the world */
+    LR_AOV_DEPTH,    /* metres along the ray, the mean of the samples that meet something; else 0 */
+    LR_AOV_POSITION, /* XYZ: in the world; likewise */
+    LR_AOV_ALPHA,    /* the share of the samples that meet something */
+    LR_AOV_ID,       /* uint32_t: the object in the middle of the pixel, counted from 1; else 0 */
+    LR_AOV_DIRECT,   /* RGB: the picture with depth 0 */
+    LR_AOV_INDIRECT, /* RGB: the rest of it */
+    LR_AOV_VARIANCE, /* RGB: of the pixel, as far as its samples tell */
+    LR_AOV_SAMPLES,  /* uint32_t: of the pixel */
+    LR_AOV_COUNT
+} lr_aov;
+
+/* As flags and files call it, such as "albedo"; NULL: there is none of this number. */
+const char *lr_aov_name(uint32_t aov);
+
+typedef struct lr_layers {
+    lr_layer layers[LR_AOV_COUNT]; /* as lr_encoding takes them, in the order of lr_aov */
+    uint32_t count;
+} lr_layers;
+
+void lr_layers_free(lr_layers *layers);
+
+/* Renders the scene as lr_render does, and the layers whose bits 1 << lr_aov are in `wanted`, which
+ * are as exact as the picture. The caller frees *picture and *layers. LR_ERROR_ARGUMENT: a layer
+ * does not go with the options; none goes with sample_range and checkpoint. The rays in the
+ * statistics are the picture's. */
+lr_status lr_render_layers(lr_device *device, const lr_scene *scene,
+                           const lr_render_options *options, uint32_t wanted, lr_picture *picture,
+                           lr_layers *layers, lr_render_stats *stats, lr_error *error);
 
 /* Renders the scene as lr_render does and writes the exact sums of its pixels to path: a part, for
  * lr_merge_parts. It is an EXR file; docs/parts.md has its channels. */

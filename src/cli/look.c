@@ -46,13 +46,26 @@ void describe_look(const lr_encoding *encoding, FILE *out)
     }
 }
 
+static const float *floats_of(const lr_layers *layers, lr_aov aov)
+{
+    for (uint32_t i = 0; layers && i < layers->count; i++) {
+        if (strcmp(layers->layers[i].name, lr_aov_name(aov)) == 0) {
+            return layers->layers[i].samples;
+        }
+    }
+    return NULL;
+}
+
 lr_status denoise_picture(lr_denoiser *denoiser, lr_picture *picture, progress *bar,
                           render_record *record, lr_error *error)
 {
     if (!denoiser) {
         return LR_OK;
     }
-    const lr_denoise_options options = {.progress = progress_update, .user = bar};
+    lr_denoise_options options = {.albedo = floats_of(record->layers, LR_AOV_ALBEDO),
+                                  .progress = progress_update,
+                                  .user = bar};
+    options.normal = options.albedo ? floats_of(record->layers, LR_AOV_NORMAL) : NULL;
     double start = seconds_now();
     progress_phase(bar, "denoising");
     lr_status status = lr_denoiser_run(denoiser, picture, &options, error);

@@ -53,8 +53,10 @@ void choose_look(const look_values *values, const lr_scene_info *scene, lr_encod
 /* ", tone aces, white 3200" of what is applied. */
 void describe_look(const lr_encoding *encoding, FILE *out);
 
-/* Denoises the picture and notes it in the record; nothing if denoiser is NULL. The bar, which may
- * be asked to stop it, is cleared. */
+/* Denoises the picture, with the help of the record's layers albedo and normal where they are, and
+ * notes it in the record; nothing if denoiser is NULL. The bar, which may be asked to stop it, is
+ * cleared.
+ */
 lr_status denoise_picture(lr_denoiser *denoiser, lr_picture *picture, struct progress *bar,
                           struct render_record *record, lr_error *error);
 

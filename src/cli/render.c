@@ -1,3 +1,4 @@
+#include "cli/aov.h"
 #include "cli/cli.h"
 #include "cli/encoding.h"
 #include "cli/frames.h"
@@ -15,7 +16,7 @@
 #include <unistd.h>
 
 typedef struct values {
-    const char *stats, *checkpoint, *frames;
+    const char *stats, *checkpoint, *aov, *frames;
     encoding_values encoding;
     picture_values picture;
     option_rectangle crop;
@@ -23,6 +24,7 @@ typedef struct values {
     double checkpoint_seconds, time, noise;
     int64_t tile, chunk;
     load_values load;
+    uint32_t aovs; /* those of --aov, a bit for each */
     bool storage_loads, quiet, verbose;
 } values;
 
@@ -82,6 +84,14 @@ static const option options[] = {
      .help = "keep what is traced in FILE, every 30 seconds and when\n"
              "interrupted; the same command goes on from there",
      .also = "resume|continue|save"},
+    {.name = "aov",
+     .kind = OPTION_TEXT,
+     AT(aov),
+     .value = "LIST",
+     .help = "more layers of an EXR file, with commas between: all,\n"
+             "or albedo, normal, depth, position, alpha, id, direct,\n"
+             "indirect, variance, samples",
+     .also = "aovs|layers|passes|channels"},
     {.name = "stats",
      .kind = OPTION_TEXT,
      AT(stats),
@@ -142,6 +152,17 @@ static int check_part(const command *self, const values *v, const lr_encoding *e
         return wrong_usage(self,
                            "--sample-range writes exact sums: how they become a picture is for "
                            "lavaray merge to say");
+    }
+    return EXIT_FINE;
+}
+
+static int check_aov(const command *self, const values *v, const lr_encoding *encoding)
+{
+    if (encoding->format != LR_FORMAT_EXR) {
+        return wrong_usage(self, "--aov writes layers, which only EXR files have: -o FILE.exr");
+    }
+    if (v->sample_range.given || v->checkpoint) {
+        return wrong_usage(self, "--aov goes with neither --sample-range nor --checkpoint");
     }
     return EXIT_FINE;
 }
@@ -216,6 +237,9 @@ static int check_values(const command *self, const values *v, const char *scene,
         return wrong_usage(self, "-q and -v contradict each other");
     }
     int code = choose_encoding(self, &v->encoding, encoding);
+    if (code == EXIT_FINE && v->aov) {
+        code = check_aov(self, v, encoding);
+    }
     if (code == EXIT_FINE && v->sample_range.given) {
         code = check_part(self, v, encoding);
     }
@@ -271,7 +295,7 @@ static int say_interrupted(const values *v, const char *problem)
 }
 
 /* Writes the picture, unless it is a part, which is written already. */
-static int write_result(const values *v, const lr_encoding *encoding, const lr_picture *picture,
+static int write_result(const values *v, lr_encoding encoding, const lr_picture *picture,
                         render_record *record)
 {
     double start = seconds_now();
@@ -282,9 +306,11 @@ static int write_result(const values *v, const lr_encoding *encoding, const lr_p
         .denoiser = record->denoiser,
         .frame = (unsigned)v->load.frame,
     };
+    encoding.layers = record->layers->layers;
+    encoding.layer_count = record->layers->count;
     int code = v->sample_range.given
                    ? EXIT_FINE
-                   : write_picture(picture, v->encoding.output, *encoding, &origin);
+                   : write_picture(picture, v->encoding.output, encoding, &origin);
     if (code == EXIT_FINE && v->checkpoint) {
         unlink(v->checkpoint); /* it may never have been written */
     }
@@ -301,12 +327,19 @@ static int trace_and_write(const values *v, lr_device *device, lr_denoiser *deno
 {
     lr_error error = {0};
     lr_picture picture = {0};
+    lr_layers layers = {.count = 0};
     lr_render_options wanted = make_options(v, p);
+    lr_status status;
     progress_phase(p, "building and compiling");
-    lr_status status =
-        v->sample_range.given
-            ? lr_render_part(device, scene, &wanted, v->encoding.output, &record->stats, &error)
-            : lr_render(device, scene, &wanted, &picture, &record->stats, &error);
+    if (v->sample_range.given) {
+        status = lr_render_part(device, scene, &wanted, v->encoding.output, &record->stats, &error);
+    } else if (v->aovs) {
+        status = lr_render_layers(device, scene, &wanted, v->aovs, &picture, &layers,
+                                  &record->stats, &error);
+    } else {
+        status = lr_render(device, scene, &wanted, &picture, &record->stats, &error);
+    }
+    record->layers = &layers;
     if (status == LR_OK) {
         status = denoise_picture(denoiser, &picture, p, record, &error);
     }
@@ -325,7 +358,7 @@ static int trace_and_write(const values *v, lr_device *device, lr_denoiser *deno
     /* Before the picture is written: one that a driver complained about is not worth keeping. */
     code = check_validation(device, EXIT_FINE);
     if (code == EXIT_FINE) {
-        code = write_result(v, encoding, &picture, record);
+        code = write_result(v, *encoding, &picture, record);
     }
     if (code != EXIT_FINE) {
         goto done;
@@ -340,6 +373,7 @@ static int trace_and_write(const values *v, lr_device *device, lr_denoiser *deno
     code = v->stats ? write_record(record, v->stats) : EXIT_FINE;
 done:
     lr_picture_free(&picture);
+    lr_layers_free(&layers);
     return code;
 }
 
@@ -455,6 +489,9 @@ static int run(const command *self, int argc, char **argv)
     }
     j.path = argv[0];
     int code = check_values(self, v, j.path, &j.encoding);
+    if (code == EXIT_FINE && v->aov) {
+        code = parse_aovs(self, v->aov, &j.v.aovs);
+    }
     if (code != EXIT_FINE) {
         return code;
     }

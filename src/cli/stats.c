@@ -75,6 +75,22 @@ static void print_count(const char *name, uint64_t count)
     }
 }
 
+static uint32_t layer_count(const render_record *r)
+{
+    return r->layers ? r->layers->count : 0;
+}
+
+static void print_layers(const render_record *r)
+{
+    uint32_t count = layer_count(r);
+    for (uint32_t i = 0; i < count; i++) {
+        fprintf(stderr, "%s%s", i ? ", " : "layers   ", r->layers->layers[i].name);
+    }
+    if (count) {
+        fprintf(stderr, "; %.3f s more\n", r->stats.layers_seconds);
+    }
+}
+
 void print_record(const render_record *r)
 {
     const lr_render_stats *s = &r->stats;
@@ -104,6 +120,7 @@ void print_record(const render_record *r)
     print_count("not traced: depth", s->dropped_depth);
     print_count("not traced: weight", s->dropped_weight);
     print_count("media lost: nesting", s->dropped_nesting);
+    print_layers(r);
     if (r->denoiser) {
         fprintf(stderr, "denoised by %s in %.3f s\n", r->denoiser, r->denoise_seconds);
     }
@@ -148,6 +165,15 @@ static json_t *rays_json(uint64_t traced, uint64_t hit)
     return json_pack("{s:I, s:I}", "traced", (json_int_t)traced, "hit", (json_int_t)hit);
 }
 
+static json_t *layers_json(const lr_layers *layers)
+{
+    json_t *names = json_array();
+    for (uint32_t i = 0; i < layers->count; i++) {
+        json_array_append_new(names, json_string(layers->layers[i].name));
+    }
+    return names;
+}
+
 static json_t *record_json(const render_record *r)
 {
     const lr_render_stats *s = &r->stats;
@@ -178,6 +204,9 @@ static json_t *record_json(const render_record *r)
                             json_pack("[I,I]", (json_int_t)s->first_sample,
                                       (json_int_t)s->first_sample + s->sample_count - 1));
     }
+    if (layer_count(r)) {
+        json_object_set_new(picture, "layers", layers_json(r->layers));
+    }
     if (r->denoiser) {
         json_object_set_new(picture, "denoised",
                             json_pack("{s:s, s:s, s:f}", "by", r->denoiser, "sha256",
@@ -202,6 +231,9 @@ static json_t *record_json(const render_record *r)
         s->compile_seconds, "trace", s->trace_seconds, "read_back", s->read_back_seconds, "write",
         r->write_seconds, "total", r->total_seconds, "longest_pass", s->longest_pass_seconds);
     json_object_set_new(rays, "resumed", json_real(s->resumed));
+    if (layer_count(r)) {
+        json_object_set_new(seconds, "layers", json_real(s->layers_seconds));
+    }
     return json_pack(
         "{s:s, s:o*, s:o*, s:o*, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:f, s:o, s:o, s:I}", "version",
         LR_VERSION, "scene", scene, "output", output, "camera", camera, "device", device, "picture",

@@ -12,9 +12,10 @@ typedef struct render_record {
     uint32_t width, height; /* of what was written: the crop's, if there is one */
     double exposure;
     const char *tone;
-    double white;           /* kelvin; 0: off */
-    const char *denoiser;   /* NULL: not denoised */
-    char denoised_hash[65]; /* of the picture then */
+    double white;            /* kelvin; 0: off */
+    const lr_layers *layers; /* beside the picture; NULL, or none: only that */
+    const char *denoiser;    /* NULL: not denoised */
+    char denoised_hash[65];  /* of the picture then */
     double denoise_seconds;
     lr_device_info device;
     bool exact;

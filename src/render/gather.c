@@ -266,6 +266,11 @@ static lr_status reach_with_checkpoints(gather *g, lr_error *error)
     return status;
 }
 
+bool lr_needs_sums(const lr_render_options *options)
+{
+    return options->checkpoint || options->seconds > 0 || options->noise > 0;
+}
+
 /* Doubles the samples of the blocks that are too noisy until none is, or all are used up. */
 static lr_status reach_quiet(gather *g, lr_error *error)
 {

@@ -6,6 +6,9 @@
 #include "render/sums.h"
 #include "render/wavefront.h"
 
+/* Whether a render goes over the picture more than once, and so has to gather. */
+bool lr_needs_sums(const lr_render_options *options);
+
 /* Brings all pixels of the sums to the samples that they are to have. With a checkpoint, first
  * takes over what it holds; a failure on the way leaves one behind. With a time limit, which began
  * at `start` (lr_now), sums->count becomes the number of samples reached. */

@@ -206,7 +206,8 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
         .fog_density = (float)(scene->fog_density * LOG2_E),
     };
     packed->constants[LR_SPEC_INSPECT] = settings->inspect != LR_INSPECT_LIGHT;
-    packed->constants[LR_SPEC_PATH] = settings->integrator == LR_INTEGRATOR_PATH;
+    packed->constants[LR_SPEC_PATH] =
+        settings->integrator == LR_INTEGRATOR_PATH && settings->inspect == LR_INSPECT_LIGHT;
     packed->constants[LR_SPEC_CAMERA] = has_lens(scene) || lr_pack_filter(scene, settings);
     packed->constants[LR_SPEC_FOG] = scene->fog_density > 0;
     lr_status status = lr_pack_texture_records(scene, packed, error);

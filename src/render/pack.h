@@ -8,13 +8,20 @@
 #include "render/trees.h"
 #include "scene/scene.h"
 
-/* What pixels show. Anything but light is only for the window: it needs kernels of its own. */
+/* What pixels show. Anything but light needs kernels of its own. */
 typedef enum lr_inspect {
     LR_INSPECT_LIGHT,
     LR_INSPECT_NORMAL = LR_GPU_INSPECT_NORMAL, /* that light falls by: (n + 1) / 2 */
     LR_INSPECT_DEPTH = LR_GPU_INSPECT_DEPTH,   /* from 1 at the eye, 1/2 at the focus, to 0 */
     LR_INSPECT_OBJECT = LR_GPU_INSPECT_OBJECT, /* a colour for each */
     LR_INSPECT_RAYS = LR_GPU_INSPECT_RAYS,     /* rays, 1/64 each */
+    /* Not in the window, as gpu_layout.h says: */
+    LR_INSPECT_ALBEDO = LR_GPU_INSPECT_ALBEDO,
+    LR_INSPECT_SHIFTED_NORMAL = LR_GPU_INSPECT_SHIFTED_NORMAL,
+    LR_INSPECT_DISTANCE = LR_GPU_INSPECT_DISTANCE,
+    LR_INSPECT_POSITION = LR_GPU_INSPECT_POSITION,
+    LR_INSPECT_NEGATIVE_POSITION = LR_GPU_INSPECT_NEGATIVE_POSITION,
+    LR_INSPECT_NUMBER = LR_GPU_INSPECT_NUMBER,
 } lr_inspect;
 
 /* What a render is asked for, with the scene's own values where the caller left them open. */

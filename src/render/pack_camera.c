@@ -104,6 +104,8 @@ void lr_pack_camera(const lr_scene *scene, const lr_settings *settings, lr_packe
     bool bounces = settings->inspect == LR_INSPECT_LIGHT || settings->inspect == LR_INSPECT_RAYS;
     frame->depth = bounces ? settings->depth : 0;
     frame->inspect = settings->inspect;
+    if (settings->integrator == LR_INTEGRATOR_PATH)
+        frame->inspect |= LR_GPU_INSPECT_PATHS;
     frame->inspect_scale = (float)lr_vec3_length(lr_vec3_sub(camera->to, camera->from));
     pack_inside(scene, camera, packed);
     if (scene->default_light) {

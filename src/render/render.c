@@ -4,30 +4,16 @@
 #include "base/memory.h"
 #include "render/film.h"
 #include "render/gather.h"
+#include "render/job.h"
 #include "render/settings.h"
-#include "render/wavefront.h"
 
-/* What a render works with, made ready. */
-typedef struct job {
-    const lr_render_options *options;
-    lr_settings settings;
-    lr_packed_scene packed;
-    lr_wavefront *wavefront;
-    double begun; /* lr_now() */
-} job;
-
-static lr_status start(job *j, lr_device *device, const lr_scene *scene,
-                       const lr_render_options *options, lr_render_stats *stats, lr_error *error)
+lr_status lr_job_open(lr_job *j, lr_device *device, const lr_scene *scene, lr_render_stats *stats,
+                      lr_error *error)
 {
-    static const lr_render_options defaults;
-    *j = (job){.options = options ? options : &defaults, .begun = lr_now()};
-    *stats = (lr_render_stats){.device_seconds = device->open_seconds};
-    lr_status status = lr_settle(scene, j->options, &j->settings, error);
-    double cpu_begun = lr_cpu_now();
-    if (!status)
-        status = lr_pack_scene(scene, &j->settings, &j->packed, error);
-    stats->build_seconds = lr_now() - j->begun;
-    stats->build_cpu_seconds = lr_cpu_now() - cpu_begun;
+    double begun = lr_now(), cpu_begun = lr_cpu_now();
+    lr_status status = lr_pack_scene(scene, &j->settings, &j->packed, error);
+    stats->build_seconds += lr_now() - begun;
+    stats->build_cpu_seconds += lr_cpu_now() - cpu_begun;
     if (status)
         return status;
     j->wavefront = lr_alloc(1, sizeof *j->wavefront);
@@ -36,7 +22,17 @@ static lr_status start(job *j, lr_device *device, const lr_scene *scene,
     return lr_wavefront_create(device, &j->packed, j->options, stats, j->wavefront, error);
 }
 
-static void finish(job *j)
+lr_status lr_job_start(lr_job *j, lr_device *device, const lr_scene *scene,
+                       const lr_render_options *options, lr_render_stats *stats, lr_error *error)
+{
+    static const lr_render_options defaults;
+    *j = (lr_job){.options = options ? options : &defaults, .begun = lr_now()};
+    *stats = (lr_render_stats){.device_seconds = device->open_seconds};
+    lr_status status = lr_settle(scene, j->options, &j->settings, error);
+    return status ? status : lr_job_open(j, device, scene, stats, error);
+}
+
+void lr_job_finish(lr_job *j)
 {
     if (j->wavefront)
         lr_wavefront_destroy(j->wavefront);
@@ -44,8 +40,7 @@ static void finish(job *j)
     lr_packed_scene_free(&j->packed);
 }
 
-/* What is known once the picture is there. */
-static void complete_stats(const job *j, const lr_picture *picture, lr_render_stats *stats)
+void lr_job_describe(const lr_job *j, const lr_picture *picture, lr_render_stats *stats)
 {
     stats->width = j->settings.width;
     stats->height = j->settings.height;
@@ -61,7 +56,7 @@ static void complete_stats(const job *j, const lr_picture *picture, lr_render_st
     lr_picture_hash(picture, stats->hash);
 }
 
-static lr_status make_picture(const job *j, lr_picture *picture, lr_error *error)
+lr_status lr_job_picture(const lr_job *j, lr_picture *picture, lr_error *error)
 {
     picture->width = j->settings.crop_width;
     picture->height = j->settings.crop_height;
@@ -75,7 +70,7 @@ static lr_status make_picture(const job *j, lr_picture *picture, lr_error *error
 
 typedef struct tile_progress {
     const lr_render_options *options;
-    double done, total; /* tiles */
+    double done, total; /* tiles, or their ranges */
 } tile_progress;
 
 static bool report_progress(void *user, double tile_fraction)
@@ -86,47 +81,60 @@ static bool report_progress(void *user, double tile_fraction)
     return p->options->progress(p->options->user, (p->done + tile_fraction) / p->total);
 }
 
-static void resolve(const uint32_t *film, const lr_tile *tile, const lr_settings *settings,
-                    lr_picture *picture)
-{
-    for (uint32_t y = 0; y < tile->height; y++) {
-        size_t row = (tile->y - settings->crop_y + y) * (size_t)picture->width;
-        lr_film_resolve(&film[(size_t)y * tile->width * LR_FILM_WORDS], tile->width,
-                        &picture->pixels[3 * (row + tile->x - settings->crop_x)]);
-    }
-}
-
-/* Every tile with all of its samples, so that no sums but a tile's are ever kept. */
-static lr_status render_tiles(const job *j, lr_picture *picture, lr_error *error)
+lr_status lr_job_trace(const lr_job *j, uint32_t ranges, lr_take_film take, void *user,
+                       lr_error *error)
 {
     const lr_settings *settings = &j->settings;
     uint32_t size = j->wavefront->tile_size;
     uint32_t across = (settings->crop_width + size - 1) / size;
     uint32_t down = (settings->crop_height + size - 1) / size;
-    tile_progress progress = {j->options, 0, (double)across * down};
+    tile_progress progress = {j->options, 0, (double)across * down * ranges};
     lr_status status = LR_OK;
-    for (uint32_t i = 0; i < across * down && !status; i++) {
-        uint32_t x = i % across * size, y = i / across * size;
+    for (uint64_t i = 0; i < (uint64_t)across * down * ranges && !status; i++) {
+        uint32_t number = (uint32_t)(i / ranges), range = (uint32_t)(i % ranges);
+        uint32_t x = number % across * size, y = number / across * size;
         uint32_t right = settings->crop_width - x, below = settings->crop_height - y;
+        uint32_t from = (uint32_t)((uint64_t)settings->sample_count * range / ranges);
+        uint32_t to = (uint32_t)((uint64_t)settings->sample_count * (range + 1) / ranges);
         lr_tile tile = {
             .x = settings->crop_x + x,
             .y = settings->crop_y + y,
             .width = right < size ? right : size,
             .height = below < size ? below : size,
-            .first_sample = settings->first_sample,
-            .samples = settings->sample_count,
+            .first_sample = settings->first_sample + from,
+            .samples = to - from,
         };
         const uint32_t *film;
         status = lr_wavefront_render(j->wavefront, &tile, report_progress, &progress, &film, error);
         if (!status)
-            resolve(film, &tile, settings, picture);
+            take(user, &tile, film);
         progress.done++;
     }
     return status;
 }
 
-/* The samples of the pixels; where they differ in number. */
-static void count_samples(const lr_sums *sums, lr_render_stats *stats)
+typedef struct resolver {
+    const lr_settings *settings;
+    lr_picture *picture;
+} resolver;
+
+static void resolve(void *user, const lr_tile *tile, const uint32_t *film)
+{
+    const resolver *r = user;
+    for (uint32_t y = 0; y < tile->height; y++) {
+        size_t row = (tile->y - r->settings->crop_y + y) * (size_t)r->picture->width;
+        lr_film_resolve(&film[(size_t)y * tile->width * LR_FILM_WORDS], tile->width,
+                        &r->picture->pixels[3 * (row + tile->x - r->settings->crop_x)]);
+    }
+}
+
+/* Every tile with all of its samples, so that no sums but a tile's are ever kept. */
+static lr_status render_tiles(const lr_job *j, lr_picture *picture, lr_error *error)
+{
+    return lr_job_trace(j, 1, resolve, &(resolver){&j->settings, picture}, error);
+}
+
+void lr_job_count(const lr_sums *sums, lr_render_stats *stats)
 {
     size_t pixels = (size_t)sums->width * sums->height;
     uint64_t total = 0;
@@ -143,14 +151,14 @@ static void count_samples(const lr_sums *sums, lr_render_stats *stats)
 }
 
 /* The same over the sums of the whole picture, which are left in *sums. */
-static lr_status render_sums(job *j, const lr_scene *scene, lr_sums *sums, lr_picture *picture,
+static lr_status render_sums(lr_job *j, const lr_scene *scene, lr_sums *sums, lr_picture *picture,
                              lr_render_stats *stats, lr_error *error)
 {
     lr_status status = lr_sums_create(sums, scene, &j->settings, j->options, error);
     if (!status)
         status = lr_gather(j->wavefront, &j->settings, j->options, sums, j->begun, error);
     if (!status)
-        count_samples(sums, stats);
+        lr_job_count(sums, stats);
     if (!status && j->options->seconds > 0)
         j->settings.samples = j->settings.sample_count = sums->count;
     if (!status)
@@ -158,33 +166,27 @@ static lr_status render_sums(job *j, const lr_scene *scene, lr_sums *sums, lr_pi
     return status;
 }
 
-/* Whether a render goes over the picture more than once. */
-static bool needs_sums(const lr_render_options *options)
-{
-    return options->checkpoint || options->seconds > 0 || options->noise > 0;
-}
-
 lr_status lr_render(lr_device *device, const lr_scene *scene, const lr_render_options *options,
                     lr_picture *picture, lr_render_stats *stats, lr_error *error)
 {
     lr_render_stats own_stats;
     lr_sums sums = {0};
-    job j;
+    lr_job j;
     stats = stats ? stats : &own_stats;
     *picture = (lr_picture){0};
-    lr_status status = start(&j, device, scene, options, stats, error);
+    lr_status status = lr_job_start(&j, device, scene, options, stats, error);
     if (!status)
-        status = make_picture(&j, picture, error);
-    if (!status && needs_sums(j.options))
+        status = lr_job_picture(&j, picture, error);
+    if (!status && lr_needs_sums(j.options))
         status = render_sums(&j, scene, &sums, picture, stats, error);
     else if (!status)
         status = render_tiles(&j, picture, error);
     if (!status)
-        complete_stats(&j, picture, stats);
+        lr_job_describe(&j, picture, stats);
     else
         lr_picture_free(picture);
     lr_sums_free(&sums);
-    finish(&j);
+    lr_job_finish(&j);
     return status;
 }
 
@@ -194,19 +196,19 @@ lr_status lr_render_part(lr_device *device, const lr_scene *scene, const lr_rend
     lr_render_stats own_stats;
     lr_picture picture = {0};
     lr_sums sums = {0};
-    job j;
+    lr_job j;
     stats = stats ? stats : &own_stats;
-    lr_status status = start(&j, device, scene, options, stats, error);
+    lr_status status = lr_job_start(&j, device, scene, options, stats, error);
     if (!status)
-        status = make_picture(&j, &picture, error);
+        status = lr_job_picture(&j, &picture, error);
     if (!status)
         status = render_sums(&j, scene, &sums, &picture, stats, error);
     if (!status)
         status = lr_sums_write(&sums, path, error);
     if (!status)
-        complete_stats(&j, &picture, stats);
+        lr_job_describe(&j, &picture, stats);
     lr_picture_free(&picture);
     lr_sums_free(&sums);
-    finish(&j);
+    lr_job_finish(&j);
     return status;
 }

@@ -24,8 +24,8 @@ lr_status lr_sums_create(lr_sums *sums, const lr_scene *scene, const lr_settings
     size_t pixels = (size_t)sums->width * sums->height;
     if (pixels > LR_IMAGE_MAX_SAMPLES / LR_FILM_WORDS)
         return lr_fail(error, LR_ERROR_ARGUMENT,
-                       "%ux%u pixels are more than the %d of parts and checkpoints; render pieces "
-                       "with --crop",
+                       "%ux%u pixels are more than the %d of parts, checkpoints and layers; render "
+                       "pieces with --crop",
                        sums->width, sums->height, LR_IMAGE_MAX_SAMPLES / LR_FILM_WORDS);
     sums->film = lr_alloc(pixels, LR_FILM_WORDS * sizeof *sums->film);
     if (!sums->film)
