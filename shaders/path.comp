@@ -177,7 +177,6 @@ void main()
         distance = path.distance + met.t;
     }
 
-
     film_add(ray.pixel, sum);
     // The stores come last: on a CPU an atomic waits for all stores before it.
     uint slot;
