@@ -9,22 +9,12 @@
 
 enum { ZIP_LEVEL = 4 }; /* OpenEXR's own choice: higher ones take long for little */
 
-/* The picture, or a layer. */
-typedef struct exr_source {
-    const char *name; /* "" of the picture */
-    const char *letters;
-    size_t components; /* of a pixel: as many as there are letters, or 1 */
-    exr_pixel_type_t type;
-    const unsigned char *samples; /* as they are in memory */
-    void *changed; /* room for the rows of a chunk, where they are not written as they are */
-} exr_source;
-
 typedef struct exr_output {
-    const image_encoder *encoder;
+    const image_exr *exr;
     exr_context_t context;
     image_buffer file;
-    exr_source *sources; /* the picture first */
-    uint32_t source_count;
+    void **changed; /* by source: room for the rows of a chunk, where they are not written as they
+                       are; else NULL */
     exr_result_t (*compress)(exr_encode_pipeline_t *);
     char reason[128]; /* the library's, the first one */
 } exr_output;
@@ -71,14 +61,14 @@ uint16_t image_half(float value)
     return (uint16_t)(sign | (magnitude - 0x38000000) >> 13);
 }
 
-static size_t sample_size(const exr_source *source)
+static size_t component_count(const image_exr_source *source)
 {
-    return source->type == EXR_PIXEL_HALF ? 2 : 4;
+    return source->letters[0] ? strlen(source->letters) : 1;
 }
 
 enum { CHANNEL_NAME = 32 };
 
-static void name_channel(const exr_source *source, size_t component, char name[CHANNEL_NAME])
+static void name_channel(const image_exr_source *source, size_t component, char name[CHANNEL_NAME])
 {
     if (source->letters[0])
         snprintf(name, CHANNEL_NAME, "%s%s%c", source->name, source->name[0] ? "." : "",
@@ -87,60 +77,34 @@ static void name_channel(const exr_source *source, size_t component, char name[C
         snprintf(name, CHANNEL_NAME, "%s", source->name);
 }
 
-/* Fills the sources: the picture as R, G and B in the default layer, as other programs expect it,
- * and the layers. */
-static exr_result_t list_sources(exr_output *output)
-{
-    const lr_encoding *encoding = output->encoder->encoding;
-    output->source_count = encoding->layer_count + 1;
-    output->sources = lr_alloc(output->source_count, sizeof *output->sources);
-    if (!output->sources)
-        return EXR_ERR_OUT_OF_MEMORY;
-    output->sources[0] = (exr_source){
-        .name = "",
-        .letters = "RGB",
-        .components = 3,
-        .type = encoding->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
-        .samples = (const unsigned char *)output->encoder->picture->pixels,
-    };
-    for (uint32_t i = 0; i < encoding->layer_count; i++) {
-        const lr_layer *layer = &encoding->layers[i];
-        output->sources[i + 1] = (exr_source){
-            .name = layer->name,
-            .letters = layer->channels,
-            .components = layer->channels[0] ? strlen(layer->channels) : 1,
-            .type = layer->integers ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT,
-            .samples = layer->samples,
-        };
-    }
-    return EXR_ERR_SUCCESS;
-}
-
-/* Makes room for the rows of a chunk of those that are light. */
+/* Makes room for the rows of a chunk of the sources that are adjusted. */
 static exr_result_t reserve_rows(exr_output *output, int32_t lines)
 {
-    const lr_encoding *encoding = output->encoder->encoding;
-    for (uint32_t i = 0; i < output->source_count; i++) {
-        if (i > 0 && !encoding->layers[i - 1].light)
+    const image_exr *exr = output->exr;
+    for (uint32_t i = 0; i < exr->source_count; i++) {
+        if (!exr->sources[i].adjusted)
             continue;
-        exr_source *source = &output->sources[i];
-        source->changed =
-            lr_alloc(3 * (size_t)output->encoder->picture->width, (size_t)lines * sizeof(float));
-        if (!source->changed)
+        output->changed[i] = lr_alloc(3 * (size_t)exr->width, (size_t)lines * sizeof(float));
+        if (!output->changed[i])
             return EXR_ERR_OUT_OF_MEMORY;
     }
     return EXR_ERR_SUCCESS;
 }
 
-static exr_result_t add_channels(const exr_output *output, const exr_source *source, bool light)
+static exr_result_t add_channels(const exr_output *output, const image_exr_source *source)
 {
+    static const exr_pixel_type_t types[] = {
+        [IMAGE_EXR_FLOAT] = EXR_PIXEL_FLOAT,
+        [IMAGE_EXR_HALF] = EXR_PIXEL_HALF,
+        [IMAGE_EXR_UINT] = EXR_PIXEL_UINT,
+    };
     exr_result_t code = EXR_ERR_SUCCESS;
-    for (size_t i = 0; i < source->components && code == EXR_ERR_SUCCESS; i++) {
+    for (size_t i = 0; i < component_count(source) && code == EXR_ERR_SUCCESS; i++) {
         char name[CHANNEL_NAME];
         name_channel(source, i, name);
-        code =
-            exr_add_channel(output->context, 0, name, source->type,
-                            light ? EXR_PERCEPTUALLY_LOGARITHMIC : EXR_PERCEPTUALLY_LINEAR, 1, 1);
+        code = exr_add_channel(
+            output->context, 0, name, types[source->type],
+            source->light ? EXR_PERCEPTUALLY_LOGARITHMIC : EXR_PERCEPTUALLY_LINEAR, 1, 1);
     }
     return code;
 }
@@ -148,18 +112,16 @@ static exr_result_t add_channels(const exr_output *output, const exr_source *sou
 /* The windows begin at the origin. */
 static exr_result_t write_header(const exr_output *output)
 {
-    const lr_picture *picture = output->encoder->picture;
-    const lr_encoding *encoding = output->encoder->encoding;
+    const image_exr *exr = output->exr;
     int part;
     exr_result_t code = exr_add_part(output->context, NULL, EXR_STORAGE_SCANLINE, &part);
     if (code == EXR_ERR_SUCCESS)
-        code = exr_initialize_required_attr_simple(output->context, 0, (int32_t)picture->width,
-                                                   (int32_t)picture->height, EXR_COMPRESSION_ZIP);
-    for (uint32_t i = 0; i < output->source_count && code == EXR_ERR_SUCCESS; i++)
-        code = add_channels(output, &output->sources[i], i == 0 || encoding->layers[i - 1].light);
-    for (uint32_t i = 0; i < encoding->text_count && code == EXR_ERR_SUCCESS; i++)
-        code = exr_attr_set_string(output->context, 0, encoding->texts[i].key,
-                                   encoding->texts[i].value);
+        code = exr_initialize_required_attr_simple(output->context, 0, (int32_t)exr->width,
+                                                   (int32_t)exr->height, EXR_COMPRESSION_ZIP);
+    for (uint32_t i = 0; i < exr->source_count && code == EXR_ERR_SUCCESS; i++)
+        code = add_channels(output, &exr->sources[i]);
+    for (uint32_t i = 0; i < exr->text_count && code == EXR_ERR_SUCCESS; i++)
+        code = exr_attr_set_string(output->context, 0, exr->texts[i].key, exr->texts[i].value);
     return code == EXR_ERR_SUCCESS ? exr_write_header(output->context) : code;
 }
 
@@ -174,43 +136,47 @@ static exr_result_t compress(exr_encode_pipeline_t *pipeline)
     return code;
 }
 
-/* The rows of a chunk as they are to be written. */
-static const unsigned char *chunk_rows(const exr_output *output, const exr_source *source,
-                                       const exr_chunk_info_t *chunk)
+/* Adjusts the rows of a chunk, which are floats in threes, into `changed`. */
+static void change_rows(const exr_output *output, const image_exr_source *source,
+                        const exr_chunk_info_t *chunk, void *changed)
 {
-    size_t row = source->components * output->encoder->picture->width;
-    const unsigned char *rows = source->samples + (size_t)chunk->start_y * row * sizeof(float);
-    if (!source->changed)
-        return rows;
-    const float *in = (const float *)(const void *)rows;
-    float *floats = source->changed;
-    uint16_t *halves = source->changed;
+    size_t row = 3 * (size_t)output->exr->width;
+    const float *in = (const float *)source->samples + (size_t)chunk->start_y * row;
+    float *floats = changed;
+    uint16_t *halves = changed;
     for (size_t i = 0; i < row * (size_t)chunk->height; i += 3) {
         float pixel[3];
-        image_adjust(output->encoder, in + i, pixel);
+        image_adjust(output->exr->encoder, in + i, pixel);
         for (int k = 0; k < 3; k++)
-            if (source->type == EXR_PIXEL_HALF)
+            if (source->type == IMAGE_EXR_HALF)
                 halves[i + k] = image_half(pixel[k]);
             else
                 floats[i + k] = pixel[k];
     }
-    return source->changed;
 }
 
 /* Tells the pipeline's channels, which are in an order of their own, where their samples are. */
-static void place_channels(const exr_output *output, const exr_source *source,
+static void place_channels(const exr_output *output, uint32_t number,
                            exr_encode_pipeline_t *pipeline)
 {
-    const unsigned char *rows = chunk_rows(output, source, &pipeline->chunk);
-    for (size_t i = 0; i < source->components; i++) {
+    const image_exr_source *source = &output->exr->sources[number];
+    size_t sample = source->type == IMAGE_EXR_HALF ? 2 : 4, stride = source->stride;
+    const unsigned char *rows = source->samples;
+    rows += (size_t)pipeline->chunk.start_y * output->exr->width * stride;
+    if (source->adjusted) {
+        change_rows(output, source, &pipeline->chunk, output->changed[number]);
+        rows = output->changed[number];
+        stride = 3 * sample;
+    }
+    for (size_t i = 0; i < component_count(source); i++) {
         char name[CHANNEL_NAME];
         name_channel(source, i, name);
         for (int k = 0; k < pipeline->channel_count; k++) {
             exr_coding_channel_info_t *channel = &pipeline->channels[k];
             if (strcmp(channel->channel_name, name) != 0)
                 continue;
-            channel->encode_from_ptr = rows + i * sample_size(source);
-            channel->user_pixel_stride = (int32_t)(source->components * sample_size(source));
+            channel->encode_from_ptr = rows + i * sample;
+            channel->user_pixel_stride = (int32_t)stride;
             channel->user_line_stride = channel->user_pixel_stride * pipeline->chunk.width;
         }
     }
@@ -222,8 +188,8 @@ static exr_result_t write_chunk(exr_output *output, const exr_chunk_info_t *chun
     exr_result_t code = exr_encoding_initialize(output->context, 0, chunk, &pipeline);
     if (code != EXR_ERR_SUCCESS)
         return code;
-    for (uint32_t i = 0; i < output->source_count; i++)
-        place_channels(output, &output->sources[i], &pipeline);
+    for (uint32_t i = 0; i < output->exr->source_count; i++)
+        place_channels(output, i, &pipeline);
     code = exr_encoding_choose_default_routines(output->context, 0, &pipeline);
     if (code == EXR_ERR_SUCCESS) {
         output->compress = pipeline.compress_fn;
@@ -237,16 +203,13 @@ static exr_result_t write_chunk(exr_output *output, const exr_chunk_info_t *chun
 
 static exr_result_t write_file(exr_output *output)
 {
-    const lr_picture *picture = output->encoder->picture;
     int32_t lines = 0;
-    exr_result_t code = list_sources(output);
-    if (code == EXR_ERR_SUCCESS)
-        code = write_header(output);
+    exr_result_t code = write_header(output);
     if (code == EXR_ERR_SUCCESS)
         code = exr_get_scanlines_per_chunk(output->context, 0, &lines);
     if (code == EXR_ERR_SUCCESS)
         code = reserve_rows(output, lines);
-    for (int64_t y = 0; y < picture->height && code == EXR_ERR_SUCCESS; y += lines) {
+    for (int64_t y = 0; y < output->exr->height && code == EXR_ERR_SUCCESS; y += lines) {
         exr_chunk_info_t chunk = {0};
         code = exr_write_scanline_chunk_info(output->context, 0, (int)y, &chunk);
         if (code == EXR_ERR_SUCCESS)
@@ -255,29 +218,37 @@ static exr_result_t write_file(exr_output *output)
     return code;
 }
 
-lr_status image_encode_exr(const image_encoder *encoder, unsigned char **bytes, size_t *size,
-                           lr_error *error)
+static exr_result_t write_all(exr_output *output)
 {
-    const lr_picture *picture = encoder->picture;
-    exr_output output = {.encoder = encoder};
-    if (picture->width > INT32_MAX / 16 || picture->height > INT32_MAX)
-        return lr_fail(error, LR_ERROR_ARGUMENT, "an EXR of %u x %u pixels is too large",
-                       picture->width, picture->height);
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
     setup.error_handler_fn = on_error;
-    setup.user_data = &output;
+    setup.user_data = output;
     setup.write_fn = on_write;
-    setup.zip_level = ZIP_LEVEL;
-    exr_result_t code = exr_start_write(&output.context, "EXR", EXR_WRITE_FILE_DIRECTLY, &setup);
-    if (code == EXR_ERR_SUCCESS) {
-        code = write_file(&output);
-        /* Also writes the table of chunks. */
-        exr_result_t finished = exr_finish(&output.context);
-        code = code == EXR_ERR_SUCCESS ? finished : code;
+    setup.zip_level = output->exr->zip_level;
+    exr_result_t code = exr_start_write(&output->context, "EXR", EXR_WRITE_FILE_DIRECTLY, &setup);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    code = write_file(output);
+    /* Also writes the table of chunks. */
+    exr_result_t finished = exr_finish(&output->context);
+    return code == EXR_ERR_SUCCESS ? finished : code;
+}
+
+lr_status image_exr_write(const image_exr *exr, unsigned char **bytes, size_t *size,
+                          lr_error *error)
+{
+    exr_output output = {.exr = exr, .changed = lr_alloc(exr->source_count, sizeof(void *))};
+    *bytes = NULL;
+    *size = 0;
+    if (exr->width > INT32_MAX / 16 || exr->height > INT32_MAX) {
+        free(output.changed);
+        return lr_fail(error, LR_ERROR_ARGUMENT, "an EXR of %s%u x %u pixels is too large",
+                       exr->what, exr->width, exr->height);
     }
-    for (uint32_t i = 0; output.sources && i < output.source_count; i++)
-        free(output.sources[i].changed);
-    free(output.sources);
+    exr_result_t code = output.changed ? write_all(&output) : EXR_ERR_OUT_OF_MEMORY;
+    for (uint32_t i = 0; output.changed && i < exr->source_count; i++)
+        free(output.changed[i]);
+    free(output.changed);
     if (code == EXR_ERR_SUCCESS) {
         *bytes = output.file.bytes;
         *size = output.file.size;
@@ -286,6 +257,55 @@ lr_status image_encode_exr(const image_encoder *encoder, unsigned char **bytes, 
     free(output.file.bytes);
     bool out_of_memory = code == EXR_ERR_OUT_OF_MEMORY || !output.reason[0];
     return lr_fail(error, out_of_memory ? LR_ERROR_MEMORY : LR_ERROR_ARGUMENT,
-                   "an EXR of %u x %u pixels cannot be made: %s", picture->width, picture->height,
+                   "an EXR of %s%u x %u pixels cannot be made: %s", exr->what, exr->width,
+                   exr->height,
                    output.reason[0] ? output.reason : exr_get_default_error_message(code));
+}
+
+/* The picture as R, G and B in the default layer, as other programs expect it, and the layers. */
+lr_status image_encode_exr(const image_encoder *encoder, unsigned char **bytes, size_t *size,
+                           lr_error *error)
+{
+    const lr_picture *picture = encoder->picture;
+    const lr_encoding *encoding = encoder->encoding;
+    image_exr_source *sources = lr_alloc(encoding->layer_count + 1, sizeof *sources);
+    if (!sources)
+        return lr_fail(error, LR_ERROR_MEMORY, "out of memory for an EXR of %u x %u pixels",
+                       picture->width, picture->height);
+    sources[0] = (image_exr_source){
+        .name = "",
+        .letters = "RGB",
+        .type = encoding->half ? IMAGE_EXR_HALF : IMAGE_EXR_FLOAT,
+        .samples = picture->pixels,
+        .stride = 3 * sizeof(float),
+        .light = true,
+        .adjusted = true,
+    };
+    for (uint32_t i = 0; i < encoding->layer_count; i++) {
+        const lr_layer *layer = &encoding->layers[i];
+        image_exr_source *source = &sources[i + 1];
+        *source = (image_exr_source){
+            .name = layer->name,
+            .letters = layer->channels,
+            .type = layer->integers ? IMAGE_EXR_UINT : IMAGE_EXR_FLOAT,
+            .samples = layer->samples,
+            .light = layer->light,
+            .adjusted = layer->light,
+        };
+        source->stride = component_count(source) * sizeof(float);
+    }
+    image_exr exr = {
+        .width = picture->width,
+        .height = picture->height,
+        .sources = sources,
+        .source_count = encoding->layer_count + 1,
+        .texts = encoding->texts,
+        .text_count = encoding->text_count,
+        .encoder = encoder,
+        .zip_level = ZIP_LEVEL,
+        .what = "",
+    };
+    lr_status status = image_exr_write(&exr, bytes, size, error);
+    free(sources);
+    return status;
 }

@@ -39,6 +39,32 @@ lr_status image_encode_png(const image_encoder *encoder, unsigned char **bytes, 
 lr_status image_encode_exr(const image_encoder *encoder, unsigned char **bytes, size_t *size,
                            lr_error *error);
 
+/* Channels of an EXR file that lie together in memory. */
+typedef struct image_exr_source {
+    const char *name;    /* "", or of a layer */
+    const char *letters; /* channels NAME.C, or C without a name; "": one that is called NAME */
+    enum { IMAGE_EXR_FLOAT, IMAGE_EXR_HALF, IMAGE_EXR_UINT } type;
+    const void *samples; /* of 4 bytes; halves are made of floats */
+    size_t stride;       /* bytes from one pixel to the next */
+    bool light;          /* colours as opposed to other numbers */
+    bool adjusted;       /* ... that image_adjust changes: floats in threes; all halves are */
+} image_exr_source;
+
+typedef struct image_exr {
+    uint32_t width, height;
+    const image_exr_source *sources;
+    uint32_t source_count;
+    const lr_text *texts;
+    uint32_t text_count;
+    const image_encoder *encoder; /* NULL where nothing is adjusted */
+    int zip_level;
+    const char *what; /* for messages: "", or "the sums of " */
+} image_exr;
+
+/* The file in memory; the caller frees *bytes. */
+lr_status image_exr_write(const image_exr *exr, unsigned char **bytes, size_t *size,
+                          lr_error *error);
+
 /* The nearest half, ties to even; finite values beyond the largest half become that one. */
 uint16_t image_half(float value);
 
