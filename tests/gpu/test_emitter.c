@@ -1,10 +1,9 @@
 /* What paths are lit by: the irradiance that samples add up to against closed forms, how samples
  * are spread, and that their pdf is the one that is reckoned where a ray meets the light by chance.
  */
-#include "gpu_tests.h"
+#include "packed_tests.h"
 
 #include "emitter.spv.h"
-#include "render/pack.h"
 #include "scene/sky.h"
 #include "unit/temporary_folder.h"
 
@@ -27,46 +26,12 @@ static answer found[COUNT];
 
 static void ask(lr_device *device, const lr_packed_scene *packed)
 {
-    enum { BINDINGS = LR_BIND_RAYS_IN + 1 };
-    static const VkDescriptorType types[BINDINGS] = {
-        [LR_BIND_FRAME] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
-        [LR_BIND_SCENE_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
-        [LR_BIND_SCENE_ROWS] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-        [LR_BIND_FILM] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-        [LR_BIND_COUNTERS] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-        [LR_BIND_RAYS_IN] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-    };
-    lr_buffer frame, rows, out, in, back;
-    const lr_buffer *buffers[BINDINGS] = {&frame, &rows, &rows, &out, &in, &in};
-    size_t row_bytes = (size_t)packed->row_count * 16;
-    MUST(lr_buffer_create(device, LR_BUFFER_UNIFORM, sizeof packed->frame, "frame", &frame, error));
-    MUST(lr_buffer_create(device, LR_BUFFER_TEXEL, row_bytes, "rows", &rows, error));
-    MUST(lr_buffer_create(device, LR_BUFFER_STORAGE, sizeof found, "out", &out, error));
-    MUST(lr_buffer_create(device, LR_BUFFER_STORAGE, sizeof asked, "in", &in, error));
-    MUST(lr_buffer_create(device, LR_BUFFER_HOST, sizeof found, "back", &back, error));
-    MUST(lr_buffer_upload(device, &frame, &packed->frame, sizeof packed->frame, error));
-    MUST(lr_buffer_upload(device, &rows, packed->rows, row_bytes, error));
-    MUST(lr_buffer_upload(device, &in, asked, sizeof asked, error));
-
-    lr_layout_desc layout_desc = {types, BINDINGS, sizeof(struct gpu_work), 1};
     lr_program_desc desc = {emitter_spv, sizeof emitter_spv / 4, packed->constants, LR_SPEC_COUNT};
     struct gpu_work work = {0};
-    lr_layout layout;
-    VkPipeline program;
-    VkDescriptorSet set;
-    MUST(lr_layout_create(device, &layout_desc, &layout, error));
-    MUST(lr_set_create(device, &layout, buffers, &set, error));
-    MUST(lr_program_create(device, &layout, &desc, &program, error));
-    MUST(lr_commands_begin(device, error));
-    lr_commands_dispatch(device, &layout, program, set, &work, COUNT / LR_GROUP_SIZE, 1, 1);
-    lr_commands_barrier(device);
-    lr_commands_copy(device, &out, &back, sizeof found);
-    MUST(lr_commands_finish(device, error));
-    memcpy(found, back.mapped, sizeof found);
-    device->vk.vkDestroyPipeline(device->handle, program, NULL);
-    lr_layout_destroy(device, &layout);
-    for (int i = 0; i < 5; i++)
-        lr_buffer_destroy(device, (lr_buffer *[]){&frame, &rows, &out, &in, &back}[i]);
+    packed_kernel k;
+    open_packed(&k, device, packed, &desc, sizeof asked, sizeof found);
+    ask_packed(&k, &work, COUNT / LR_GROUP_SIZE, asked, sizeof asked, found, sizeof found);
+    close_packed(&k);
 }
 
 /* ---- Scenes -------------------------------------------------------------------------------- */

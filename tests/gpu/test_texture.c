@@ -1,9 +1,7 @@
 /* The texture filter against double precision: all wraps, both kinds of texels, coordinates within
  * the picture, at its and its texels' edges, far off, infinite and not numbers. */
-#include "gpu_tests.h"
+#include "packed_tests.h"
 
-#include "render/pack.h"
-#include "scene/build.h"
 #include "scene/color.h"
 #include "texture.spv.h"
 
@@ -56,15 +54,8 @@ static void add_texture(lr_scene_builder *builder, uint32_t *seed, uint32_t inde
 
 static lr_scene *make_scene(void)
 {
-    static const char text[] = "camera: {}\nobjects: [sphere: {}]";
-    lr_scene *scene;
-    char *report;
-    if (lr_scene_parse(text, sizeof text - 1, "test.yaml", &scene, &report, NULL))
-        fail_msg("%s", report);
+    lr_scene *scene = scene_without_materials();
     lr_scene_builder builder = {.scene = scene};
-    free(scene->materials);
-    scene->materials = NULL;
-    scene->material_count = 0;
     uint32_t seed = 5;
     for (uint32_t i = 0; i < TEXTURES; i++)
         add_texture(&builder, &seed, i);
@@ -161,47 +152,13 @@ static void check(const lr_scene *scene, const lookup *look, const answer *reply
 
 static void run(lr_device *device, const lr_packed_scene *packed, bool texel_loads)
 {
-    enum { BINDINGS = LR_BIND_RAYS_IN + 1 };
-    static const VkDescriptorType types[BINDINGS] = {
-        [LR_BIND_FRAME] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
-        [LR_BIND_SCENE_TEXEL] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
-        [LR_BIND_SCENE_ROWS] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-        [LR_BIND_FILM] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-        [LR_BIND_COUNTERS] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-        [LR_BIND_RAYS_IN] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-    };
-    lr_buffer frame, rows, out, in, back;
-    const lr_buffer *buffers[BINDINGS] = {&frame, &rows, &rows, &out, &in, &in};
-    size_t row_bytes = (size_t)packed->row_count * 16;
-    MUST(lr_buffer_create(device, LR_BUFFER_UNIFORM, sizeof packed->frame, "frame", &frame, error));
-    MUST(lr_buffer_create(device, LR_BUFFER_TEXEL, row_bytes, "rows", &rows, error));
-    MUST(lr_buffer_create(device, LR_BUFFER_STORAGE, sizeof found, "out", &out, error));
-    MUST(lr_buffer_create(device, LR_BUFFER_STORAGE, sizeof given, "in", &in, error));
-    MUST(lr_buffer_create(device, LR_BUFFER_HOST, sizeof found, "back", &back, error));
-    MUST(lr_buffer_upload(device, &frame, &packed->frame, sizeof packed->frame, error));
-    MUST(lr_buffer_upload(device, &rows, packed->rows, row_bytes, error));
-    MUST(lr_buffer_upload(device, &in, given, sizeof given, error));
-
     uint32_t constants[LR_SPEC_COUNT] = {[LR_SPEC_TEXEL_LOADS] = texel_loads};
-    lr_layout_desc layout_desc = {types, BINDINGS, sizeof(struct gpu_work), 1};
     lr_program_desc desc = {texture_spv, sizeof texture_spv / 4, constants, LR_SPEC_COUNT};
     struct gpu_work work = {0};
-    lr_layout layout;
-    VkPipeline program;
-    VkDescriptorSet set;
-    MUST(lr_layout_create(device, &layout_desc, &layout, error));
-    MUST(lr_set_create(device, &layout, buffers, &set, error));
-    MUST(lr_program_create(device, &layout, &desc, &program, error));
-    MUST(lr_commands_begin(device, error));
-    lr_commands_dispatch(device, &layout, program, set, &work, COUNT / LR_GROUP_SIZE, 1, 1);
-    lr_commands_barrier(device);
-    lr_commands_copy(device, &out, &back, sizeof found);
-    MUST(lr_commands_finish(device, error));
-    memcpy(found, back.mapped, sizeof found);
-    device->vk.vkDestroyPipeline(device->handle, program, NULL);
-    lr_layout_destroy(device, &layout);
-    for (int i = 0; i < 5; i++)
-        lr_buffer_destroy(device, (lr_buffer *[]){&frame, &rows, &out, &in, &back}[i]);
+    packed_kernel k;
+    open_packed(&k, device, packed, &desc, sizeof given, sizeof found);
+    ask_packed(&k, &work, COUNT / LR_GROUP_SIZE, given, sizeof given, found, sizeof found);
+    close_packed(&k);
 }
 
 static void test_filter(void **state)
