@@ -80,7 +80,7 @@ static lr_status trace_samples(lr_wavefront *w, const lr_explanation *x, uint32_
 static void film_steps(const uint32_t film[LR_FILM_WORDS], uint64_t steps[3])
 {
     for (uint32_t c = 0; c < 3; c++)
-        steps[c] = film[2 * c] | (uint64_t)film[2 * c + 1] << 32;
+        steps[c] = lr_film_sum(film, c);
 }
 
 /* The sample in question: what was noted of it, in *host, which is then to be destroyed. */

@@ -6,6 +6,13 @@
 
 #include "gpu_layout.h"
 
+/* The sum of a pixel's channel, in film steps; modulo 2^64 where its flag says that it overflowed.
+ */
+static inline uint64_t lr_film_sum(const uint32_t *pixel, uint32_t channel)
+{
+    return pixel[2 * channel] | (uint64_t)pixel[2 * channel + 1] << 32;
+}
+
 /* The mean of samples > 0 contributions that sum up to `sum` film steps. Every step of it is
  * correctly rounded in double, and it never falls when the sum grows. */
 float lr_film_mean(uint64_t sum, uint32_t samples);

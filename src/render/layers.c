@@ -79,11 +79,6 @@ static float *floats_of(const rendering *r, lr_aov aov)
     return r->samples[aov];
 }
 
-static uint64_t sum_of(const uint32_t *film, uint32_t channel)
-{
-    return film[2 * channel] | (uint64_t)film[2 * channel + 1] << 32;
-}
-
 static bool report_progress(void *user, double fraction)
 {
     const rendering *r = user;
@@ -153,7 +148,7 @@ static void take_direct(rendering *r, size_t at, const uint32_t *film)
     /* What is direct is among the picture's contributions, to the bit. */
     uint32_t *sums = &r->sums.film[at * LR_FILM_WORDS];
     for (uint32_t channel = 0; channel < 3; channel++) {
-        uint64_t rest = sum_of(sums, channel) - sum_of(film, channel);
+        uint64_t rest = lr_film_sum(sums, channel) - lr_film_sum(film, channel);
         sums[2 * channel] = (uint32_t)rest;
         sums[2 * channel + 1] = (uint32_t)(rest >> 32);
     }
@@ -219,7 +214,7 @@ static void take_normal(rendering *r, size_t at, const uint32_t *film)
 {
     uint64_t samples = film[LR_FILM_SAMPLES];
     for (uint32_t channel = 0; channel < 3; channel++) {
-        int64_t sum = (int64_t)(sum_of(film, channel) - (samples << LR_FILM_STEP_BITS));
+        int64_t sum = (int64_t)(lr_film_sum(film, channel) - (samples << LR_FILM_STEP_BITS));
         double steps = (double)samples * (double)(1ull << LR_FILM_STEP_BITS);
         floats_of(r, LR_AOV_NORMAL)[3 * at + channel] = (float)((double)sum / steps);
     }
@@ -232,12 +227,12 @@ static float mean_of_hits(const rendering *r, size_t at, const uint32_t *film, u
     if (hits == 0)
         return 0;
     return film[LR_FILM_FLAGS] & 1u << channel ? lr_film_overflow(hits)
-                                               : lr_film_mean(sum_of(film, channel), hits);
+                                               : lr_film_mean(lr_film_sum(film, channel), hits);
 }
 
 static void take_distance(rendering *r, size_t at, const uint32_t *film)
 {
-    r->hits[at] = (uint32_t)(sum_of(film, 1) >> LR_FILM_STEP_BITS);
+    r->hits[at] = (uint32_t)(lr_film_sum(film, 1) >> LR_FILM_STEP_BITS);
     if (wants(r, LR_AOV_DEPTH))
         floats_of(r, LR_AOV_DEPTH)[at] = mean_of_hits(r, at, film, 0);
     if (wants(r, LR_AOV_ALPHA))
@@ -258,8 +253,8 @@ static void take_negative_position(rendering *r, size_t at, const uint32_t *film
 
 static void take_number(rendering *r, size_t at, const uint32_t *film)
 {
-    uint64_t low = sum_of(film, 0) >> LR_FILM_STEP_BITS;
-    uint64_t high = sum_of(film, 1) >> LR_FILM_STEP_BITS;
+    uint64_t low = lr_film_sum(film, 0) >> LR_FILM_STEP_BITS;
+    uint64_t high = lr_film_sum(film, 1) >> LR_FILM_STEP_BITS;
     ((uint32_t *)r->samples[LR_AOV_ID])[at] = (uint32_t)(low | high << 16);
 }
 

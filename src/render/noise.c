@@ -31,11 +31,6 @@ void lr_noise_free(lr_noise *noise)
     *noise = (lr_noise){0};
 }
 
-static uint64_t sum_of(const uint32_t *pixel, uint32_t channel)
-{
-    return pixel[2 * channel] | (uint64_t)pixel[2 * channel + 1] << 32;
-}
-
 void lr_noise_keep(lr_noise *noise, const lr_sums *sums)
 {
     uint64_t *half = noise->halves;
@@ -43,7 +38,7 @@ void lr_noise_keep(lr_noise *noise, const lr_sums *sums)
         for (uint32_t x = 0; x < noise->width; x++, half += 3)
             for (uint32_t channel = 0; channel < 3; channel++)
                 if (!lr_noise_stopped(noise, x, y))
-                    half[channel] = sum_of(lr_sums_pixel(sums, x, y), channel);
+                    half[channel] = lr_film_sum(lr_sums_pixel(sums, x, y), channel);
 }
 
 /* The squared error of a pixel's light over its brightness, the three channels together. Channels
@@ -55,7 +50,7 @@ static double pixel_noise(const uint32_t *pixel, const uint64_t *half)
     for (uint32_t channel = 0; channel < 3; channel++) {
         if (pixel[LR_FILM_FLAGS] & 1u << channel)
             continue;
-        double all = (double)sum_of(pixel, channel) * step / samples;
+        double all = (double)lr_film_sum(pixel, channel) * step / samples;
         double first = (double)half[channel] * step / (samples / 2);
         error += (all - first) * (all - first);
         light += all / 3;

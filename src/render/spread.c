@@ -9,8 +9,7 @@ void lr_spread_add(lr_spread *spread, const uint32_t *film)
     spread->samples += film[LR_FILM_SAMPLES];
     spread->ranges++;
     for (uint32_t channel = 0; channel < 3; channel++) {
-        uint64_t sum = film[2 * channel] | (uint64_t)film[2 * channel + 1] << 32;
-        double value = (double)sum / (double)(1ull << LR_FILM_STEP_BITS);
+        double value = (double)lr_film_sum(film, channel) / (double)(1ull << LR_FILM_STEP_BITS);
         if (film[LR_FILM_FLAGS] & 1u << channel)
             value = LR_FILM_MAX;
         double difference = value / samples - spread->mean[channel];
