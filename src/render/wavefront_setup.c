@@ -32,8 +32,9 @@
 
 #define CELLS_SIZE (4ull * LR_CELLS * LR_SHADOW_LIGHTS)
 
-/* Whether paths stay in registers on software devices, where trees do not need queues: there a
- * bounce through queues takes half as long again (docs/performance.md). */
+/* Whether paths stay in registers on software devices, where trees do not need queues: on lavapipe
+ * a bounce through queues takes twice as long (docs/performance.md). Not on SwiftShader, whose
+ * compiler takes gigabytes and minutes for that kernel. */
 #define LOOPS_ON_SOFTWARE 1
 
 /* RAYS of the kernels named packet. */
@@ -70,7 +71,8 @@ static void plan(lr_wavefront *w, const lr_render_options *options)
     bool packets = software && w->device->shuffle_size == LR_BATCH && !options->single_rays;
     w->rays_at_once = packets ? PACKET_RAYS : 1;
     w->rounds_most = at_least(LOOPS_PER_INVOCATION / (2 * primitives), 1);
-    w->loops = LOOPS_ON_SOFTWARE && software && has_paths(w) && !has_trees(w);
+    w->loops = LOOPS_ON_SOFTWARE && software && w->device->shuffle_size == LR_BATCH &&
+               has_paths(w) && !has_trees(w);
 }
 
 /* Bytes of a queue that has room for the children of one chunk. */
@@ -98,12 +100,19 @@ static VkDeviceSize order_size(const lr_wavefront *w)
     return explains(w) ? sizeof(struct gpu_notes) : shadow_size(w) / 8;
 }
 
+/* A scene may be too large for a storage buffer, and is then read as a texel buffer only. */
+static bool storage_fits(const lr_wavefront *w)
+{
+    return w->rows.size <= w->device->limits.maxStorageBufferRange;
+}
+
 static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *error)
 {
     uint32_t constants[LR_SPEC_COUNT];
     memcpy(constants, w->scene->constants, sizeof constants);
     uint32_t limit = w->device->limits.maxTexelBufferElements;
     constants[LR_SPEC_TEXEL_LOADS] = texel_loads;
+    constants[LR_SPEC_FEW] &= w->loops && storage_fits(w);
     constants[LR_SPEC_TEXEL_QUEUES] =
         texel_loads && queue_size(w) / 16 <= limit && shadow_size(w) / 16 <= limit;
     constants[LR_SPEC_SHUFFLE] = w->device->shuffle_size >= LR_BATCH;
@@ -220,12 +229,6 @@ void wavefront_close_if_empty(lr_wavefront *w, lr_queue *queue)
         return;
     w->unused[w->unused_count++] = queue->rays;
     queue->rays = NULL;
-}
-
-/* A scene may be too large for a storage buffer, and is then read as a texel buffer only. */
-static bool storage_fits(const lr_wavefront *w)
-{
-    return w->rows.size <= w->device->limits.maxStorageBufferRange;
 }
 
 /* The buffers of the kernels that read the rays of one queue and write those of another. */
