@@ -125,7 +125,7 @@ static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *er
     for (size_t i = 0; i < COUNT_OF(kernels) && !status; i++) {
         lr_program_desc desc = {kernels[i].words, kernels[i].size / 4, constants, LR_SPEC_COUNT};
         if (kernels[i].needed)
-            status = lr_program_create(w->device, &w->layout, &desc, kernels[i].program, error);
+            status = lr_program_take(w->device, &w->layout, &desc, kernels[i].program, error);
     }
     return status;
 }
@@ -184,6 +184,7 @@ static lr_status create_layout(lr_wavefront *w, lr_error *error)
 static_assert(offsetof(lr_wavefront, sort_place) + sizeof(VkPipeline) ==
                   offsetof(lr_wavefront, programs) + sizeof(VkPipeline[8]),
               "programs[] holds all programs");
+static_assert(LR_SPEC_COUNT <= LR_PROGRAM_CONSTANTS_MAX, "programs are told by all constants");
 static_assert(offsetof(lr_wavefront, order) + sizeof(lr_buffer) ==
                   offsetof(lr_wavefront, buffers) + sizeof(lr_buffer[12]),
               "buffers[] holds all buffers");
@@ -280,7 +281,8 @@ void wavefront_reset_counters(lr_wavefront *w)
     lr_commands_write(w->device, &w->counters, 0, &zero, sizeof zero);
 }
 
-/* Drivers compile a kernel when it first runs, so each runs once here on nothing. */
+/* Drivers compile a kernel when it first runs, so each runs once here on nothing; those that the
+ * device has kept are ready. */
 static lr_status warm_up(lr_wavefront *w, lr_error *error)
 {
     lr_status status = lr_commands_begin(w->device, error);
@@ -385,7 +387,7 @@ void lr_wavefront_destroy(lr_wavefront *wavefront)
         return;
     for (size_t i = 0; i < COUNT_OF(w->programs); i++)
         if (w->programs[i])
-            w->device->vk.vkDestroyPipeline(w->device->handle, w->programs[i], NULL);
+            lr_program_give_back(w->device, w->programs[i]);
     lr_layout_destroy(w->device, &w->layout);
     for (size_t i = 0; i < COUNT_OF(w->buffers); i++)
         lr_buffer_destroy(w->device, &w->buffers[i]);
