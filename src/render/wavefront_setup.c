@@ -45,11 +45,10 @@ static void plan(lr_wavefront *w, const lr_render_options *options)
     if (has_trees(w))
         chunk /= lights_a_segment;
     chunk = at_least(chunk, CHUNK_MIN);
-    uint32_t pixels = chunk;
+    uint32_t pixels = chunk, samples = w->scene->moment ? 1 : at_least(w->scene->frame.samples, 1);
     /* A tile whose samples all fit in half a chunk keeps the film in the cache as well. */
     if (software)
-        pixels =
-            at_most(chunk, at_least(chunk / 2 / at_least(w->scene->frame.samples, 1), 64 * 64));
+        pixels = at_most(chunk, at_least(chunk / 2 / samples, 64 * 64));
     w->tile_size = 256;
     while (w->tile_size > 8 && w->tile_size * w->tile_size > pixels)
         w->tile_size /= 2;
@@ -304,15 +303,22 @@ static bool is_texel_buffer(const lr_wavefront *w, const lr_packed_scene *scene)
     return scene->row_count <= w->device->limits.maxTexelBufferElements;
 }
 
-bool lr_wavefront_suits(const lr_wavefront *w, const lr_packed_scene *scene)
+/* Passes may become twice as long, or half. */
+static bool is_near(uint32_t a, uint32_t b)
 {
-    static const lr_render_options defaults;
+    return a <= 2 * b && b <= 2 * a;
+}
+
+bool lr_wavefront_suits(const lr_wavefront *w, const lr_packed_scene *scene,
+                        const lr_render_options *options)
+{
     lr_wavefront other = {.device = w->device, .scene = scene};
-    plan(&other, &defaults);
+    plan(&other, options);
     return !memcmp(w->scene->constants, scene->constants, sizeof scene->constants) &&
            is_texel_buffer(w, w->scene) && is_texel_buffer(w, scene) &&
-           other.chunk_rays == w->chunk_rays && other.lights_at_once == w->lights_at_once &&
-           other.shadow_room == w->shadow_room && other.rays_at_once == w->rays_at_once;
+           lights_asked(&other) == lights_asked(w) && is_near(other.chunk_rays, w->chunk_rays) &&
+           is_near(other.lights_at_once, w->lights_at_once) &&
+           other.rays_at_once == w->rays_at_once;
 }
 
 lr_status lr_wavefront_replace_scene(lr_wavefront *w, const lr_packed_scene *scene, lr_error *error)
