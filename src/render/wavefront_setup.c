@@ -337,6 +337,7 @@ bool lr_wavefront_suits(const lr_wavefront *w, const lr_packed_scene *scene,
            is_texel_buffer(w, w->scene) && is_texel_buffer(w, scene) &&
            lights_asked(&other) == lights_asked(w) && is_near(other.chunk_rays, w->chunk_rays) &&
            is_near(other.lights_at_once, w->lights_at_once) &&
+           is_near(other.rounds_most, w->rounds_most) && other.loops == w->loops &&
            other.rays_at_once == w->rays_at_once;
 }
 

@@ -20,27 +20,37 @@ bool lr_scene_blurs_any(const lr_scene *scene)
     return any;
 }
 
-bool lr_scene_keep_text(lr_scene *scene, const char *text, size_t length,
-                        const lr_load_options *options)
+bool lr_scene_retell(lr_scene *scene, const lr_report *report, const lr_load_options *options,
+                     lr_tree *tree)
 {
-    scene->text = lr_string_copy(text, length);
-    scene->text_length = length;
+    lr_retold *retold = scene->retold = lr_alloc(1, sizeof *retold);
+    if (!retold)
+        return false;
+    retold->tree = *tree;
+    *tree = (lr_tree){.root = NULL};
+    retold->text = lr_string_copy(report->text, report->length);
+    retold->length = report->length;
     if (options)
-        scene->text_options = (lr_load_options){.allow_path = options->allow_path,
-                                                .max_triangles = options->max_triangles,
-                                                .max_memory = options->max_memory};
-    return scene->text;
+        retold->options = (lr_load_options){.allow_path = options->allow_path,
+                                            .max_triangles = options->max_triangles,
+                                            .max_memory = options->max_memory};
+    return retold->text;
+}
+
+void lr_retold_free(lr_retold *retold)
+{
+    if (!retold)
+        return;
+    free(retold->text);
+    lr_tree_free(&retold->tree);
+    free(retold);
 }
 
 lr_status lr_scene_at(const lr_scene *scene, double frame, lr_scene **moment, lr_error *error)
 {
-    lr_load_options options = scene->text_options;
     lr_error cause = {0};
     char *report;
-    options.frame = frame;
-    options.previous = scene;
-    lr_status status = lr_scene_parse_moment(scene->text, scene->text_length, scene->source,
-                                             &options, moment, &report, &cause);
+    lr_status status = lr_scene_read_moment(scene, frame, moment, &report, &cause);
     if (status) /* the first line of the report tells where and what */
         lr_fail(error, status, "%.*s, in frame %.10g while the shutter is open",
                 report ? (int)strcspn(report, "\n") : 900, report ? report : cause.message, frame);

@@ -219,7 +219,7 @@ void lr_scene_destroy(lr_scene *scene)
     free(scene->objects);
     free(scene->lights);
     free(scene->source);
-    free(scene->text);
+    lr_retold_free(scene->retold);
     free(scene);
 }
 
@@ -252,23 +252,16 @@ void lr_read_tree(const lr_tree *tree, lr_scene *scene, lr_report *report,
 }
 
 /* Reads the report's text into the scene; what is wrong goes to the report. */
-static void read_text_with(lr_scene *scene, lr_report *report, const lr_load_options *options,
-                           void (*read)(lr_reader *reader, const lr_node *root))
+static void read_text(lr_scene *scene, lr_report *report, const lr_load_options *options)
 {
     if (!lr_text_check(report))
         return;
     lr_tree tree;
     lr_tree_read(&tree, report);
-    lr_read_tree(&tree, scene, report, options, read);
-    lr_tree_free(&tree);
-}
-
-static void read_text(lr_scene *scene, lr_report *report, const lr_load_options *options)
-{
-    read_text_with(scene, report, options, lr_read_scene);
-    if (lr_scene_blurs_any(scene) &&
-        !lr_scene_keep_text(scene, report->text, report->length, options))
+    lr_read_tree(&tree, scene, report, options, lr_read_scene);
+    if (lr_scene_blurs_any(scene) && !lr_scene_retell(scene, report, options, &tree))
         report->no_memory = true;
+    lr_tree_free(&tree);
 }
 
 static void read_moment(lr_reader *reader, const lr_node *root)
@@ -277,9 +270,9 @@ static void read_moment(lr_reader *reader, const lr_node *root)
     lr_read_scene(reader, root);
 }
 
-static void read_moment_text(lr_scene *scene, lr_report *report, const lr_load_options *options)
+static void read_retold(lr_scene *scene, lr_report *report, const lr_load_options *options)
 {
-    read_text_with(scene, report, options, read_moment);
+    lr_read_tree(&options->previous->retold->tree, scene, report, options, read_moment);
 }
 
 lr_status lr_scene_from_text(const char *text, size_t length, const char *name,
@@ -338,12 +331,15 @@ lr_status lr_scene_parse_with(const char *text, size_t length, const char *name,
                               report, error);
 }
 
-lr_status lr_scene_parse_moment(const char *text, size_t length, const char *name,
-                                const lr_load_options *options, lr_scene **scene, char **report,
-                                lr_error *error)
+lr_status lr_scene_read_moment(const lr_scene *scene, double frame, lr_scene **moment,
+                               char **report, lr_error *error)
 {
-    return lr_scene_from_text(text, length, name, &lr_scene_language, options, read_moment_text,
-                              scene, report, error);
+    const lr_retold *retold = scene->retold;
+    lr_load_options options = retold->options;
+    options.frame = frame;
+    options.previous = scene;
+    return lr_scene_from_text(retold->text, retold->length, scene->source, &lr_scene_language,
+                              &options, read_retold, moment, report, error);
 }
 
 lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_scene **scene,
