@@ -61,6 +61,13 @@ layout(constant_id = LR_SPEC_SHEEN) const bool has_sheen = true;
 layout(constant_id = LR_SPEC_HIGHLIGHT) const bool has_highlight = true;
 layout(constant_id = LR_SPEC_OREN_NAYAR) const bool has_oren_nayar = true;
 layout(constant_id = LR_SPEC_MODELS) const bool has_models = true;
+layout(constant_id = LR_SPEC_NORMAL_MAPS) const bool has_normal_maps = true;
+layout(constant_id = LR_SPEC_BUMP_MAPS) const bool has_bump_maps = true;
+layout(constant_id = LR_SPEC_GLOSS_MAPS) const bool has_gloss_maps = true;
+layout(constant_id = LR_SPEC_EMISSION_MAPS) const bool has_emission_maps = true;
+
+// Some surface's normals are not those of its shape.
+const bool has_relief = has_normal_maps || has_bump_maps;
 
 layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame_block; };
 layout(set = 0, binding = LR_BIND_SCENE_TEXEL) uniform usamplerBuffer scene_texels;
