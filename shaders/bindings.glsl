@@ -65,6 +65,13 @@ layout(constant_id = LR_SPEC_FEW_PLANES) const uint few_planes = LR_FEW_PLANES;
 layout(constant_id = LR_SPEC_FEW_SPHERES) const uint few_spheres = LR_FEW_SPHERES;
 layout(constant_id = LR_SPEC_FEW_FLATS) const uint few_flats = LR_FEW_FLATS;
 layout(constant_id = LR_SPEC_FEW_SOLIDS) const uint few_solids = LR_FEW_SOLIDS;
+layout(constant_id = LR_SPEC_NORMAL_MAPS) const bool has_normal_maps = true;
+layout(constant_id = LR_SPEC_BUMP_MAPS) const bool has_bump_maps = true;
+layout(constant_id = LR_SPEC_GLOSS_MAPS) const bool has_gloss_maps = true;
+layout(constant_id = LR_SPEC_EMISSION_MAPS) const bool has_emission_maps = true;
+
+// Some surface's normals are not those of its shape.
+const bool has_relief = has_normal_maps || has_bump_maps;
 
 layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame_block; };
 layout(set = 0, binding = LR_BIND_SCENE_TEXEL) uniform usamplerBuffer scene_texels;

@@ -121,7 +121,7 @@ bool bounce(bool wanted, nearest_hit met, inout gpu_ray ray, inout gpu_path path
     basis around = basis_around(here.lit_by);
     vec3 wo = to_local(around, -ray.direction);
     vec2 chances = sample_pair(key, pair + pair_roulette);
-    bsdf b = load_bsdf(here.ids.x, m, here.color, sides, wo, chances.y);
+    bsdf b = load_bsdf(here.ids.x, m, here.color, here.gloss, sides, wo, chances.y);
     vec3 origin = s.lit_from + here.n * s.offset;
     bool scatters = solid_there && !last;
     bool deepest = depth >= frame.depth;

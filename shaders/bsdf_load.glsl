@@ -190,9 +190,11 @@ void share_samples(inout bsdf b)
     b.through_share *= scale;
 }
 
-// The lobes that a surface of the material number `material` has for wo, with its colour there; `spare`
-// within [0, 1) chooses between glass and what is not, where a material is both in part.
-bsdf load_bsdf(uint material, gpu_material m, vec3 color, boundary sides, vec3 wo, float spare)
+// The lobes that a surface of the material number `material` has for wo, with its colour there and what
+// multiplies its roughness and metal; `spare` within [0, 1) chooses between glass and what is not, where a
+// material is both in part.
+bsdf load_bsdf(uint material, gpu_material m, vec3 color, vec2 gloss, boundary sides, vec3 wo,
+               float spare)
 {
     bsdf b = bsdf_black();
     float cosine = clamp(wo.z, 1.0e-4, 1.0);
@@ -200,6 +202,11 @@ bsdf load_bsdf(uint material, gpu_material m, vec3 color, boundary sides, vec3 w
     p.model = LR_GPU_MODEL_CLASSIC;
     if (has_models)
         p = load_model(material);
+    if (has_models && has_gloss_maps) {
+        p.roughness = p.roughness * gloss.x;
+        p.alpha = mix(p.alpha, p.roughness * p.roughness, gloss.x < 1.0);
+        p.metallic = p.metallic * gloss.y;
+    }
     if (p.model == LR_GPU_MODEL_CLASSIC)
         load_classic(m, color, sides, cosine, b);
     if (has_models) {

@@ -6,6 +6,7 @@
 #include "background.glsl"
 #include "basis.glsl"
 #include "light.glsl"
+#include "uv.glsl"
 
 const float emitter_pi = 3.14159274;
 
@@ -50,6 +51,27 @@ vec3 emitter_radiance(gpu_emitter e, bool from_front)
     return (e.kind & side) != 0u ? e.radiance : vec3(0.0);
 }
 
+gpu_emitter_map load_emitter_map(uint at)
+{
+    vec4 a = scene_row_float(at), b = scene_row_float(at + 1u);
+    return gpu_emitter_map(a.x, a.y, a.z, a.w, b.x, b.y, floatBitsToUint(b.z), floatBitsToUint(b.w));
+}
+
+// What multiplies its radiance at the point p, which lies at these coordinates of what is flat. Row 0 is
+// no such map.
+vec3 emitter_texel(gpu_emitter e, vec2 at, vec3 p)
+{
+    bool mapped = e.light != 0u && (e.kind & LR_GPU_EMITTER_KIND) != LR_GPU_EMITTER_LIGHT;
+    gpu_emitter_map m = load_emitter_map(mapped ? e.light : 0u);
+    vec2 uv = vec2(m.u, m.v) + vec2(m.u1, m.v1) * at.x + vec2(m.u2, m.v2) * at.y;
+    if (has_sphere_emitters) {
+        bool sphere = (e.kind & LR_GPU_EMITTER_KIND) == LR_GPU_EMITTER_SPHERE;
+        uv = mix(uv, planar_uv(mapped ? m.object : 0u, p), bvec2(sphere));
+    }
+    vec4 texel = texture_at(mapped ? m.texture : 0u, uv);
+    return mix(vec3(1.0), texel.xyz, bvec3(mapped));
+}
+
 // ---- Flat surfaces: a point uniform by area ----
 
 // Coordinates along the two edges. Triangle: Heitz, "A Low-Distortion Map Between Triangle and Square",
@@ -72,6 +94,8 @@ light_sample sample_flat(gpu_emitter e, uint kind, vec3 position, vec2 u)
 {
     vec2 at = flat_coordinates(kind, u);
     vec3 p = e.origin + e.e1 * at.x + e.e2 * at.y;
+    if (has_emission_maps)
+        e.radiance = e.radiance * emitter_texel(e, at, p);
     bool from_front = ex_dot(e.normal, position - p) > 0.0;
     vec3 n = from_front ? e.normal : -e.normal;
     // The shadow ray ends off the surface by as much as rays start off one, so it never meets it.
@@ -138,6 +162,8 @@ light_sample sample_sphere(gpu_emitter e, vec3 position, vec2 u)
     vec3 wi = sample_cone(cone.axis, cone.spread, u);
     float t = distance_to_ball(e.origin, e.radius, position, wi, cone.outside);
     float solid_angle = 2.0 * emitter_pi * cone.spread;
+    if (has_emission_maps)
+        e.radiance = e.radiance * emitter_texel(e, vec2(0.0), position + wi * t);
     vec3 value = emitter_radiance(e, cone.outside) * (solid_angle * e.inv_pdf);
     return light_sample(wi, t * LR_SHORT_OF, cone.usable ? value : vec3(0.0),
                         cone.usable ? e.pdf * ex_rcp(solid_angle) : 0.0);

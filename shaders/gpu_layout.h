@@ -107,7 +107,11 @@ typedef struct vec4 {
 #define LR_SPEC_FEW_SPHERES 58
 #define LR_SPEC_FEW_FLATS 59
 #define LR_SPEC_FEW_SOLIDS 60
-#define LR_SPEC_COUNT 61
+#define LR_SPEC_NORMAL_MAPS 61 /* some surface has a picture of its normals, */
+#define LR_SPEC_BUMP_MAPS 62   /* ... of its heights, */
+#define LR_SPEC_GLOSS_MAPS 63  /* ... paths: of its roughness or metal, */
+#define LR_SPEC_EMISSION_MAPS 64 /* ... of the light that it sends out */
+#define LR_SPEC_COUNT 65
 
 #define LR_FEW_PLANES 4 /* and the most that there may be: held.glsl */
 #define LR_FEW_SPHERES 8
@@ -343,6 +347,24 @@ struct gpu_material {
 };
 LR_ROWS(gpu_material, 9)
 
+/* Pictures of a material that are not its colour. */
+#define LR_MAP_ROWS 2u
+#define LR_NO_MAP 0xFFFFFFFFu
+#define LR_GPU_MAPS_METALLIC_SHIFT 2 /* below: the channel of roughness; here that of metal */
+#define LR_GPU_MAPS_MIRROR 16u       /* it mirrors, sharply or not */
+
+struct gpu_maps {
+    uint normal; /* the row of a gpu_texture, here and below, or LR_NO_MAP */
+    float normal_scale;
+    uint bump;
+    float bump_height; /* metres from black to white */
+    uint roughness;
+    uint metallic;
+    uint emission;
+    uint flags;
+};
+LR_ROWS(gpu_maps, 2)
+
 /* The physical side of a material, for paths. */
 #define LR_BSDF_ROWS 5u
 
@@ -404,7 +426,7 @@ struct gpu_texture {
     uint texels; /* row of the first: four in a row, a byte for red, green, blue and alpha from
                     the lowest bits up; or floats, one in a row, with alpha 1 */
     uint size;   /* width, height << 16 */
-    uint curve;  /* row b from here: the linear value of byte b */
+    uint curve;  /* row b from here: the value of byte b */
     uint flags;  /* wrap of u, wrap of v << 2, LR_GPU_TEXTURE_FLOATS */
 };
 LR_ROWS(gpu_texture, 1)
@@ -449,11 +471,24 @@ struct gpu_emitter {
     vec3 e2;
     float pdf; /* as gpu_object_emitter */
     vec3 radiance;
-    uint light; /* which of the lights */
+    uint light; /* which of the lights; of a surface the row of its gpu_emitter_map, or 0 */
     vec3 normal;
     float radius;
 };
 LR_ROWS(gpu_emitter, 5)
+
+/* How the picture of its light lies on an emitter. */
+struct gpu_emitter_map {
+    float u; /* texture coordinates at the origin of what is flat, */
+    float v;
+    float u1; /* what is added along e1, */
+    float v1;
+    float u2; /* and along e2 */
+    float v2;
+    uint texture;
+    uint object; /* of a sphere */
+};
+LR_ROWS(gpu_emitter_map, 2)
 
 /* The choices are a power of two, all equally likely; a number within each, below LR_CHOICE_STEPS /
  * how many there are, tells which of its two emitters (rows) it is. So all probabilities are whole
@@ -602,7 +637,7 @@ struct gpu_frame {
     uint bsdfs;        /* row of the gpu_bsdf of material 0 */
     uint albedo;       /* row of the tables, */
     uint glass_albedo; /* and of those of glass */
-    uint unused_bsdfs;
+    uint maps;         /* row of the gpu_maps of material 0 */
 };
 LR_ROWS(gpu_frame, 30)
 #define LR_GPU_INSPECT_NORMAL 1u

@@ -94,12 +94,17 @@ vec3 vector_of_instance(gpu_instance s, vec3 v)
     return q;
 }
 
+// The power of two that brings the greatest component of a to 1..2; none is below 0.
+float ex_power_for(vec3 a)
+{
+    uint exponent = floatBitsToUint(max(a.x, max(a.y, a.z))) >> 23;
+    return uintBitsToFloat(clamp(254u - exponent, 1u, 253u) << 23);
+}
+
 // v times the power of two that brings its greatest component to 1..2.
 vec3 ex_scale_up(vec3 v)
 {
-    vec3 a = abs(v);
-    uint exponent = floatBitsToUint(max(a.x, max(a.y, a.z))) >> 23;
-    return v * uintBitsToFloat(clamp(254u - exponent, 1u, 253u) << 23);
+    return v * ex_power_for(abs(v));
 }
 
 // A normal from its place in the octahedron's square, not of unit length (Cigolle et al., "A Survey of

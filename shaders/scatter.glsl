@@ -90,7 +90,7 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids
     }
     vec3 refracted = solid ? refract_direction(ray.direction, lit_by, c1, c2, gamma) : ray.direction;
     vec3 reflected = reflect_direction(ray.direction, lit_by);
-    if (has_corners) {
+    if (has_corners || has_relief) {
         reflected = on_side(reflected, n);
         refracted = on_side(refracted, -n);
     }

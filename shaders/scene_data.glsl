@@ -156,6 +156,13 @@ gpu_material load_material(uint index)
                         r6.w, r7.xyz, r7.w, r8.xyz, r8.w);
 }
 
+gpu_maps load_maps(uint material)
+{
+    uint at = frame.maps + LR_MAP_ROWS * material;
+    uvec4 a = scene_row(at), b = scene_row(at + 1u);
+    return gpu_maps(a.x, uintBitsToFloat(a.y), a.z, uintBitsToFloat(a.w), b.x, b.y, b.z, b.w);
+}
+
 gpu_texture load_texture(uint row)
 {
     uvec4 a = scene_row(row);

@@ -40,9 +40,18 @@ uint note_sample(gpu_light light, uint number, arriving_light arriving, gpu_mate
         highlight, directional ? 1.0 : fading, spot, uint(reaches), 0u, none, 0u, 0u));
 }
 
+// Whether light from wi meets the side of the surface that its normal n is on; whatever the relief says.
+bool is_lit(vec3 n, vec3 wi)
+{
+    bool lit = true;
+    if (has_relief)
+        lit = ex_dot(n, wi) > 0.0;
+    return lit;
+}
+
 // Adds the light of up to four sources from number `first`.
 void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m, surface s, vec3 n,
-                vec3 wo, bool lit, inout film_sum sum)
+                vec3 lit_by, vec3 wo, bool lit, inout film_sum sum)
 {
     vec3 origin = s.position + n * s.offset;
     shadow_rays rays = shadow_rays_none();
@@ -58,9 +67,9 @@ void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m,
         else
             light = load_light(first + l);
         arriving_light arriving = sample_light(light, s.position);
-        vec3 value = weight * (arriving.color * classic_light(m, color, n, wo, arriving.wi));
+        vec3 value = weight * (arriving.color * classic_light(m, color, lit_by, wo, arriving.wi));
         // Light of less than a step of the film adds nothing, whatever stands in its way.
-        bool reaches = lit && any(greaterThanEqual(value, vec3(LR_FILM_STEP)));
+        bool reaches = lit && is_lit(n, arriving.wi) && any(greaterThanEqual(value, vec3(LR_FILM_STEP)));
         uint slot = reaches ? rays.count : no_slot;
         red = replaced(red, slot, value.x);
         green = replaced(green, slot, value.y);
@@ -69,7 +78,7 @@ void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m,
         set_ray(rays, slot, shadow_ray(light, origin), shadows);
         if (explains && lit)
             noted_lights = replaced(noted_lights, slot,
-                                    note_sample(light, first + l, arriving, m, s, n, wo, origin,
+                                    note_sample(light, first + l, arriving, m, s, lit_by, wo, origin,
                                                 value, reaches));
         rays.count += reaches ? 1u : 0u;
         shadowed += reaches ? shadows : 0u;
@@ -116,7 +125,7 @@ void send_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m
         arriving_light arriving = sample_light(light, s.position);
         vec3 light_color = classic_light(m, color, lit_by, -ray.direction, arriving.wi);
         vec3 value = weight * (arriving.color * light_color);
-        bool reaches = lit && any(greaterThanEqual(value, vec3(LR_FILM_STEP)));
+        bool reaches = lit && is_lit(n, arriving.wi) && any(greaterThanEqual(value, vec3(LR_FILM_STEP)));
         bool shadowed = (light.flags & LR_GPU_LIGHT_SHADOWS) != 0u;
         vec3 at_once = value;
         if (has_inspect)
@@ -190,7 +199,7 @@ void main()
         if (has_trees)
             send_lights(work.light + l, some, weight, color, m, s, n, lit_by, ray, lit, sum);
         else
-            add_lights(work.light + l, some, weight, color, m, s, n, -ray.direction, lit, sum);
+            add_lights(work.light + l, some, weight, color, m, s, n, lit_by, -ray.direction, lit, sum);
         l += 4u;
         if (l >= count)
             break;

@@ -2,6 +2,7 @@
 #ifndef SHADING_GLSL
 #define SHADING_GLSL
 
+#include "maps.glsl"
 #include "pattern.glsl"
 #include "queue.glsl"
 #include "scene_data.glsl"
@@ -16,6 +17,7 @@ struct shading {
     bool absent; // the surface has a hole there
     vec3 n;      // geometric normal, against the ray
     vec3 lit_by; // the normal that light falls by, against the ray
+    vec2 gloss;  // what multiplies the material's roughness and metal
 };
 
 // A normal that is interpolated may face away from the ray where the surface itself does not: it is
@@ -42,12 +44,26 @@ shading shading_at(gpu_hit hit, gpu_ray ray)
         absent = has_cutouts && is_hole(m.pattern, m.inv_size, texel.w);
     }
     vec3 n = ex_dot(ray.direction, s.normal) < 0.0 ? s.normal : -s.normal;
-    vec3 lit_by = n;
-    if (has_corners) {
-        color = color * s.tint;
-        lit_by = facing(ex_dot(ray.direction, s.normal) < 0.0 ? s.shading : -s.shading, ray.direction);
+    vec3 lit_by = n, upright = s.shading;
+    vec2 gloss = vec2(1.0);
+    bool mirrors = false;
+    if (has_relief || has_gloss_maps || has_emission_maps) {
+        gpu_maps maps = load_maps(ids.x);
+        mirrors = (maps.flags & LR_GPU_MAPS_MIRROR) != 0u;
+        if (has_relief)
+            upright = relief_normal(maps, upright, s.uv, s.growth);
+        if (has_gloss_maps)
+            gloss = gloss_texel(maps, s.uv);
+        if (has_emission_maps)
+            dim_emission(maps, s.uv, m);
     }
-    return shading(s, ids, m, color, absent, n, lit_by);
+    if (has_corners)
+        color = color * s.tint;
+    if (has_corners || has_relief)
+        lit_by = facing(ex_dot(ray.direction, s.normal) < 0.0 ? upright : -upright, ray.direction);
+    if (has_relief && mirrors)
+        lit_by = mirroring(lit_by, n, ray.direction);
+    return shading(s, ids, m, color, absent, n, lit_by, gloss);
 }
 
 #endif

@@ -17,6 +17,7 @@ struct surface {
     vec3 lit_from;    // where shadow rays start, before the offset
     vec3 tint;        // of the mesh's corners, times the material's colour
     vec2 uv; // texture coordinates, in scenes with textures
+    uv_growth growth;
 };
 
 // On a smooth mesh light must fall as if the surface were curved: shadow rays start at the point where
@@ -27,6 +28,25 @@ vec3 curved_point(vec3 p, gpu_triangle f, vec3 weight, vec3 na, vec3 nb, vec3 nc
     vec3 a = p - f.a, b = p - f.b, c = p - f.c;
     float da = min(ex_dot(a, na), 0.0), db = min(ex_dot(b, nb), 0.0), dc = min(ex_dot(c, nc), 0.0);
     return p - (na * (da * weight.x) + nb * (db * weight.y) + nc * (dc * weight.z));
+}
+
+// How the texture coordinates grow over a triangle of a mesh, in the world; 0 where its corners do not
+// tell.
+uv_growth mesh_growth(gpu_instance place, gpu_triangle f, gpu_vertex a, gpu_vertex b, gpu_vertex c)
+{
+    vec3 e1 = f.b - f.a, e2 = f.c - f.a, longest = max(abs(e1), abs(e2));
+    float scale = ex_power_for(longest);
+    e1 = e1 * scale;
+    e2 = e2 * scale;
+    vec3 n = ex_cross(e1, e2);
+    float area2 = ex_dot(n, n);
+    bool usable = area2 > 1.0e-24;
+    float share = ex_rcp(usable ? area2 : 1.0) * scale;
+    vec3 along_1 = ex_cross(e2, n) * share, along_2 = ex_cross(n, e1) * share;
+    vec3 u = along_1 * (b.u - a.u) + along_2 * (c.u - a.u);
+    vec3 v = along_1 * (b.v - a.v) + along_2 * (c.v - a.v);
+    return uv_growth(usable ? instance_normal(place, u) : vec3(0.0),
+                     usable ? instance_normal(place, v) : vec3(0.0));
 }
 
 surface mesh_surface(gpu_hit hit, vec3 o, vec3 d)
@@ -42,12 +62,14 @@ surface mesh_surface(gpu_hit hit, vec3 o, vec3 d)
     vec3 position = o + d * hit.t, r = abs(position);
     float reach = max(max(r.x, r.y), max(r.z, hit.t));
     surface s = surface(position, reach * LR_OFFSET, world, hit.object, world, position, vec3(1.0),
-                        vec2(0.0));
+                        vec2(0.0), no_growth);
     if (has_corners && (f.flags & (LR_FLAG_SMOOTH | LR_FLAG_UV | LR_FLAG_COLORS)) != 0u) {
         uvec4 corners = scene_row(frame.corners + hit.primitive - frame.triangles.begin);
         gpu_vertex a = load_vertex(corners.x), b = load_vertex(corners.y), c = load_vertex(corners.z);
         vec3 w = met.weight;
         s.uv = uv_between(a, b, c, w);
+        if (has_relief && (f.flags & LR_FLAG_UV) != 0u)
+            s.growth = mesh_growth(place, f, a, b, c);
         if ((f.flags & LR_FLAG_COLORS) != 0u)
             s.tint = unpack_color(a.color) * w.x + unpack_color(b.color) * w.y +
                      unpack_color(c.color) * w.z;
@@ -77,6 +99,7 @@ surface surface_at(gpu_hit hit, vec3 o, vec3 d)
     vec3 position = o + d * t, normal = vec3(0.0, 1.0, 0.0);
     uint object = hit.object;
     vec2 uv = vec2(0.0);
+    uv_growth growth = no_growth;
     bool planar = has_textures;
     vec3 a = abs(position);
     float reach = max(max(a.x, a.y), a.z);
@@ -100,6 +123,8 @@ surface surface_at(gpu_hit hit, vec3 o, vec3 d)
         reach = max(reach, abs(f.offset));
         if (has_textures)
             uv = flat_uv(f, position);
+        if (has_relief)
+            growth = flat_growth(f);
         planar = false;
     }
     bool ellipsoid = has_ellipsoids && is_in(frame.ellipsoids, primitive);
@@ -115,6 +140,8 @@ surface surface_at(gpu_hit hit, vec3 o, vec3 d)
         normal = solid_normal(s, n);
         if (has_textures && has_boxes)
             uv = box_uv(p, n);
+        if (has_relief && has_boxes)
+            growth = box_growth(s, n);
         planar = planar && !box;
         reach = max(reach, t);
     }
@@ -122,7 +149,10 @@ surface surface_at(gpu_hit hit, vec3 o, vec3 d)
         vec2 projected = planar_uv(object, position);
         uv = planar ? projected : uv;
     }
-    surface s = surface(position, reach * LR_OFFSET, normal, object, normal, position, vec3(1.0), uv);
+    if (has_relief && planar)
+        growth = planar_growth(object);
+    surface s = surface(position, reach * LR_OFFSET, normal, object, normal, position, vec3(1.0), uv,
+                        growth);
     if (has_meshes && is_in(frame.triangles, primitive))
         s = mesh_surface(hit, o, d);
     return s;

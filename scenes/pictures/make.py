@@ -1,4 +1,5 @@
-# make.py: writes the pictures of scenes/textures.yaml and surroundings.yaml beside itself, and that of the test scene cutout.
+# make.py: writes the pictures of scenes/textures.yaml, surroundings.yaml and maps.yaml beside itself, and that of the
+# test scene cutout.
 import math
 import pathlib
 import struct
@@ -70,6 +71,78 @@ def cutout(x, y):
     return 255, 0, 0, 255 if x == 0 else 0
 
 
+def smooth(edge, x):
+    x = max(0.0, min(1.0, x / edge))
+    return x * x * (3 - 2 * x)
+
+
+def brick_at(x, y):
+    """Which brick of 64 x 32 texels, and how far it is to its edge."""
+    row = y // 32 % 4
+    along = (x + 32 * (row & 1)) % 128
+    return (row, along // 64), min(along % 64, 63 - along % 64, y % 32, 31 - y % 32)
+
+
+def brick_height(x, y):
+    """In texels: bricks stand out of the mortar and are a little uneven and askew."""
+    brick, edge = brick_at(x % 128, y % 128)
+    lean = (hashed("lean", *brick) - 0.5) * (x % 64) / 64 + (hashed("rise", *brick) - 0.5) * (y % 32) / 16
+    waves = math.sin(0.4 * x + 5 * hashed("wave", *brick)) * math.sin(0.5 * y + 3 * hashed(*brick)) * 0.3
+    return smooth(5, edge - 1) * (3 + lean + waves)
+
+
+def bricks(x, y):
+    brick, edge = brick_at(x, y)
+    if edge < 2:
+        return 150, 144, 134
+    shade = 0.75 + 0.4 * hashed("shade", *brick)
+    return tuple(int(c * shade) for c in (168, 84, 62))
+
+
+def bricks_normal(x, y):
+    across = (brick_height(x + 1, y) - brick_height(x - 1, y)) / 2
+    down = (brick_height(x, y + 1) - brick_height(x, y - 1)) / 2
+    length = math.sqrt(across * across + down * down + 1)
+    return tuple(round(127 * c / length + 128) for c in (-across, down, 1))
+
+
+def worn(x, y):
+    """0: paint, 1: metal. It is worn off at the edges and in spots."""
+    edge = min(x, y, 127 - x, 127 - y)
+    spots = sum(math.sin(x * 2 * math.pi * i / 128 + 4 * i) * math.sin(y * 2 * math.pi * (i % 3 + 1) / 128 + i * i)
+                for i in range(1, 6)) / 5
+    return smooth(0.12, spots - 0.05 + 0.5 * (1 - smooth(14, edge)))
+
+
+def plate(x, y):
+    share = worn(x, y)
+    return tuple(round(a + (b - a) * share) for a, b in ((28, 205), (96, 198), (150, 190)))
+
+
+def plate_gloss(x, y):
+    """As glTF has it: green is roughness, blue metal."""
+    share = worn(x, y)
+    scratch = 0.08 * math.sin(1.3 * y + math.sin(0.2 * x)) * share
+    return 0, round(255 * (0.55 - 0.3 * share + scratch)), round(255 * share)
+
+
+def dents(x, y):
+    u, v = x / 64 * 2 * math.pi, y / 64 * 2 * math.pi
+    height = 0.5 + 0.25 * math.cos(4 * u) * math.cos(4 * v) + 0.2 * math.sin(u + math.sin(2 * v)) * math.sin(v)
+    return (round(255 * height),) * 3
+
+
+def sign(x, y):
+    """A neon arrow in a neon ring."""
+    u, v = (x + 0.5) / 48 - 1, (y + 0.5) / 48 - 1
+    ring = abs(math.hypot(u, v) - 0.82) - 0.05
+    shaft = max(abs(v) - 0.05, abs(u + 0.05) - 0.45)
+    head = max(abs(abs(v) - 0.45 + u) - 0.07, abs(v) - 0.36, -u)
+    tube, pink = min(shaft, head), 1 - smooth(0.06, ring)
+    blue = 1 - smooth(0.06, tube)
+    return tuple(round(255 * min(1, a * pink + b * blue)) for a, b in ((1, 0.1), (0.12, 0.75), (0.45, 1)))
+
+
 def studio(u, v):
     """A dark room with a lit ceiling and three lamps, linear, all around (u) and from up to down (v)."""
     if 0.47 < u < 0.53 and 0.18 < v < 0.24:
@@ -112,4 +185,7 @@ hdr(here / "studio.hdr", 128, 64, studio)
 png(here / "crate.png", 96, 96, crate)
 png(here / "tiles.png", 128, 128, tiles)
 png(here / "leaf.png", 64, 64, leaf, 4)
+for name, size, texel in (("bricks", 128, bricks), ("bricks-normal", 128, bricks_normal), ("plate", 128, plate),
+                          ("plate-gloss", 128, plate_gloss), ("dents", 64, dents), ("sign", 96, sign)):
+    png(here / f"{name}.png", size, size, texel)
 png(here.parents[1] / "tests/images/scenes/cutout.png", 2, 1, cutout, 4)

@@ -3,11 +3,14 @@
 #ifndef LR_RENDER_EMITTERS_H
 #define LR_RENDER_EMITTERS_H
 
+#include "render/light_map.h"
 #include "render/pack_internal.h"
 
 typedef struct lr_emitter {
     struct gpu_emitter record; /* but for the probabilities */
-    double area;               /* square metres; 0 of a light */
+    struct gpu_emitter_map map; /* of the picture of its light, if `mapped` */
+    bool mapped;
+    double area; /* square metres; 0 of a light */
     double power;
     uint32_t object; /* LR_NONE: one of the lights, or the background */
 } lr_emitter;
@@ -17,6 +20,7 @@ typedef struct lr_emitters {
     const lr_scene *scene;
     lr_emitter *items; /* owned */
     uint32_t count, capacity;
+    lr_light_map *light_maps; /* of each texture, once it is needed; only while they are found */
     bool no_memory;
 } lr_emitters;
 

@@ -219,6 +219,8 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
     if (!status && settings->integrator == LR_INTEGRATOR_PATH)
         status = lr_pack_bsdfs(scene, packed, error);
     if (!status)
+        status = lr_pack_maps(scene, packed, error);
+    if (!status)
         status = pack_lights(scene, settings->inspect >= LR_INSPECT_ALBEDO, packed, error);
     if (!status)
         status = lr_pack_environment(scene, packed, error);

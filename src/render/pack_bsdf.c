@@ -50,8 +50,31 @@ static void pack_bsdf(const lr_material *m, struct gpu_bsdf *out)
     };
 }
 
+/* The least value of a channel in the picture that multiplies a roughness; 1 without a picture. */
+static double least_share(const lr_scene *scene, const lr_map *map)
+{
+    const lr_texture *t = map->given ? &scene->textures[map->texture] : NULL;
+    double least = 1;
+    for (size_t i = 0; t && i < (size_t)t->width * t->height; i++) {
+        double alpha = t->floats ? 1 : t->bytes[4 * i + 3] / 255.0;
+        double value = map->channel == LR_CHANNEL_ALPHA ? alpha
+                       : t->floats                      ? t->floats[3 * i + map->channel]
+                                                        : t->bytes[4 * i + map->channel] / 255.0;
+        least = fmin(least, value);
+    }
+    return least;
+}
+
+/* Whether the material may be smooth somewhere, whatever is rounded. */
+static bool may_be_smooth(const lr_scene *scene, const lr_material *m)
+{
+    double least = m->roughness * least_share(scene, &m->maps[LR_MAP_ROUGHNESS]);
+    return least * least < LR_ALPHA_MIN * 1.001;
+}
+
 /* What the material needs of the kernel. */
-static void note_use(const lr_material *m, const struct gpu_bsdf *p, uint32_t *use)
+static void note_use(const lr_scene *scene, const lr_material *m, const struct gpu_bsdf *p,
+                     uint32_t *use)
 {
     bool rough = p->alpha >= LR_ALPHA_MIN;
     bool glass = p->model == LR_GPU_MODEL_DIELECTRIC || p->transmission > 0;
@@ -63,7 +86,7 @@ static void note_use(const lr_material *m, const struct gpu_bsdf *p, uint32_t *u
     use[LR_SPEC_GLOSS] |= gloss && rough;
     use[LR_SPEC_ROUGH_GLASS] |= glass && rough;
     /* Glass may lie in a medium of the same index of refraction. */
-    use[LR_SPEC_DELTA] |= glass || (gloss && !rough);
+    use[LR_SPEC_DELTA] |= glass || (gloss && may_be_smooth(scene, m));
     use[LR_SPEC_COAT] |= p->coat > 0;
     use[LR_SPEC_DELTA] |= p->coat > 0 && p->coat_alpha < LR_ALPHA_MIN;
     use[LR_SPEC_SHEEN] |= !lr_color_is_black(m->sheen);
@@ -114,7 +137,7 @@ lr_status lr_pack_bsdfs(const lr_scene *scene, lr_packed_scene *packed, lr_error
     for (uint32_t i = 0; i < scene->material_count; i++) {
         struct gpu_bsdf record;
         pack_bsdf(&scene->materials[i], &record);
-        note_use(&scene->materials[i], &record, use);
+        note_use(scene, &scene->materials[i], &record, use);
         if (lr_pack_rows(packed, &record, sizeof record / 16) == UINT32_MAX)
             return no_memory(error);
     }

@@ -103,13 +103,28 @@ static void set_background(const lr_emitters *list, const uint32_t *steps, lr_pa
         lr_pack_environment_choice(packed, picture, sun);
 }
 
-static bool pack_choices(const lr_emitters *list, const uint32_t *steps, lr_packed_scene *packed)
+/* How pictures lie on emitters, whose records get to know the rows. */
+static bool pack_emitter_maps(lr_emitters *list, lr_packed_scene *packed)
 {
-    uint32_t bits, first = packed->row_count;
+    bool fits = true;
+    for (uint32_t i = 0; i < list->count && fits; i++) {
+        lr_emitter *d = &list->items[i];
+        if (!d->mapped)
+            continue;
+        d->record.light = lr_pack_rows(packed, &d->map, sizeof d->map / 16);
+        fits = d->record.light != UINT32_MAX;
+    }
+    return fits;
+}
+
+static bool pack_choices(lr_emitters *list, const uint32_t *steps, lr_packed_scene *packed)
+{
+    uint32_t bits;
     struct gpu_choice *choices = lr_choice_table(steps, list->count, &bits);
     if (!choices)
         return false;
-    bool fits = true;
+    bool fits = pack_emitter_maps(list, packed);
+    uint32_t first = packed->row_count;
     for (uint32_t i = 0; i < list->count && fits; i++)
         fits = lr_pack_rows(packed, &list->items[i].record, LR_EMITTER_ROWS) != UINT32_MAX;
     for (uint32_t i = 0; i < 1u << bits; i++) {

@@ -88,6 +88,9 @@ lr_status lr_pack_meshes(const lr_scene *scene, const uint32_t *flags, uint32_t 
 bool lr_bake_sky(const lr_scene *scene, const lr_vec3 axes[3], lr_texture *picture, lr_color *sun,
                  double *solid_angle);
 
+/* pack_maps.c: the pictures of materials that are not their colour. */
+lr_status lr_pack_maps(const lr_scene *scene, lr_packed_scene *packed, lr_error *error);
+
 /* pack_emitters.c: for paths, what shines, how it is chosen, and how likely that is for each
  * object. */
 lr_status lr_pack_emitters(const lr_scene *scene, const lr_primitive *primitives,

@@ -78,6 +78,11 @@ bool lr_scene_add_note(lr_scene_builder *builder, const char *format, ...)
     return true;
 }
 
+bool lr_material_has_relief(const lr_material *material)
+{
+    return material->maps[LR_MAP_NORMAL].given || material->maps[LR_MAP_BUMP].given;
+}
+
 bool lr_light_is_soft(const lr_light *light)
 {
     return light->kind == LR_LIGHT_DIRECTIONAL ? light->angle > 0 : light->radius > 0;

@@ -166,6 +166,12 @@ static void put_material(hasher *h, const lr_material *m)
     put_vector(h, m->eta);
     put_vector(h, m->k);
     put_vector(h, m->sheen);
+    for (int i = 0; i < LR_MAP_COUNT; i++) {
+        put_count(h, m->maps[i].given);
+        put_count(h, m->maps[i].texture);
+        put_count(h, m->maps[i].channel);
+        put_number(h, m->maps[i].amount);
+    }
 }
 
 static void put_shape(hasher *h, const lr_object *object)
@@ -248,6 +254,7 @@ static void put_texture(hasher *h, const lr_texture *texture)
     put_count(h, texture->height);
     put_count(h, texture->wrap_u);
     put_count(h, texture->wrap_v);
+    put_count(h, texture->texels);
     put_count(h, texture->floats != NULL);
     if (texture->bytes)
         put_bytes(h, texture->bytes, 4 * texels);

@@ -110,9 +110,16 @@ lr_status lr_import_convert(lr_import *import);
 lr_status lr_import_material(lr_import *import, uint32_t index, uint32_t *material);
 /* Whether a material has numbers under the key; asked for numbers in a text, assimp may throw. */
 bool lr_import_has_numbers(const struct aiMaterial *from, const char *key, unsigned texture_type);
-/* import_texture.c: the texture of the colour, if there is one that can be shown. */
-lr_status lr_import_texture(lr_import *import, const struct aiMaterial *from, const char *name,
+/* import_texture.c: the texture of the colour, if there is one that can be shown; notes about those
+ * that neither it nor a map shows. */
+lr_status lr_import_texture(lr_import *import, const struct aiMaterial *from,
                             lr_material *material);
+/* The texture of assimp's type, if there is one that can be shown, as a map like `map`; `what` stands
+ * for it in notes. */
+lr_status lr_import_map(lr_import *import, const struct aiMaterial *from, unsigned type,
+                        const char *what, lr_map_kind kind, lr_map map, lr_material *material);
+/* Whether some texel of the texture is not grey. */
+bool lr_import_is_colored(const lr_import *import, uint32_t texture);
 
 /* import_mesh.c: the scene's mesh for aiMesh `index`; LR_IMPORT_NOTHING, after a note, when nothing
  * of it can be shown. */

@@ -151,42 +151,81 @@ static bool set_alpha(const json_t *json, lr_material *material)
     return true;
 }
 
-/* False when it is left out because a texture shapes it. */
-static bool set_emission(const json_t *json, lr_material *material)
+static void set_emission(const json_t *json, lr_material *material)
 {
     const json_t *strength = lr_gltf_extension(json, "KHR_materials_emissive_strength");
     double light = clamp(lr_gltf_number(strength, "emissiveStrength", 1), 0, LR_COLOR_MAX);
-    lr_color color = lr_vec3_scale(gltf_color(json, "emissiveFactor", 0, 1), light);
-    bool textured = lr_gltf_member(json, "emissiveTexture") && greatest(color) > 0;
-    material->emission = textured ? grey(0) : color;
-    return !textured;
+    material->emission = lr_vec3_scale(gltf_color(json, "emissiveFactor", 0, 1), light);
 }
 
-static lr_status gltf_material(lr_import *import, const json_t *json, lr_material *material)
+/* Without the texture of its light, the surface sends out none: it would be far too much. */
+static lr_status emission_map(lr_import *import, const struct aiMaterial *from,
+                              lr_material *material)
+{
+    bool wanted = greatest(material->emission) > 0;
+    lr_status status = wanted ? lr_import_map(import, from, aiTextureType_EMISSIVE, "emissive map",
+                                              LR_MAP_EMISSION, (lr_map){.given = false}, material)
+                              : LR_OK;
+    if (!status && wanted && !material->maps[LR_MAP_EMISSION].given)
+        material->emission = grey(0);
+    return status;
+}
+
+static lr_status gltf_maps(lr_import *import, const json_t *json, const struct aiMaterial *from,
+                           lr_material *material)
+{
+    const json_t *pbr = lr_gltf_member(json, "pbrMetallicRoughness");
+    const json_t *normal = lr_gltf_member(json, "normalTexture");
+    lr_map relief = {.amount = clamp(lr_gltf_number(normal, "scale", 1), -1000, 1000)};
+    lr_map roughness = {.channel = LR_CHANNEL_GREEN}, metallic = {.channel = LR_CHANNEL_BLUE};
+    lr_status status = LR_OK;
+    if (normal)
+        status = lr_import_map(import, from, aiTextureType_NORMALS, "normal map", LR_MAP_NORMAL,
+                               relief, material);
+    if (!status && lr_gltf_member(pbr, "metallicRoughnessTexture") &&
+        material->model == LR_MODEL_PBR) {
+        status = lr_import_map(import, from, aiTextureType_UNKNOWN, "metallic-roughness map",
+                               LR_MAP_ROUGHNESS, roughness, material);
+        metallic.texture = material->maps[LR_MAP_ROUGHNESS].texture;
+        metallic.given = material->maps[LR_MAP_ROUGHNESS].given;
+        material->maps[LR_MAP_METALLIC] = metallic.given ? metallic : (lr_map){.given = false};
+        /* Without it nobody knows what is metal: most is not. */
+        material->metallic = metallic.given ? material->metallic : 0;
+    }
+    if (!status && lr_gltf_member(json, "emissiveTexture"))
+        status = emission_map(import, from, material);
+    return status;
+}
+
+static lr_status gltf_material(lr_import *import, const json_t *json, const struct aiMaterial *from,
+                               lr_material *material)
 {
     const json_t *pbr = lr_gltf_member(json, "pbrMetallicRoughness");
     const json_t *texture = lr_gltf_member(pbr, "baseColorTexture");
     bool mapped = lr_gltf_member(pbr, "metallicRoughnessTexture") != NULL;
     material->one_sided = !json_is_true(lr_gltf_member(json, "doubleSided"));
     set_surface(json, !mapped, material);
-    bool blended = set_alpha(json, material), emission = set_emission(json, material);
+    bool blended = set_alpha(json, material);
+    set_emission(json, material);
+    if (material->model == LR_MODEL_PBR)
+        material->metallic = clamp(lr_gltf_number(pbr, "metallicFactor", 1), 0, 1);
     const struct {
         bool applies;
         const char *text;
     } notes[] = {
-        {mapped, "metallicRoughnessTexture is not used, the surface is shown as no metal"},
+        {mapped && material->model != LR_MODEL_PBR,
+         "metallicRoughnessTexture is not used, the surface is shown as no metal"},
         {lr_gltf_extension(texture, "KHR_texture_transform") != NULL,
          "the shift, turn and scale of its texture are left out"},
         {blended && !texture, "alphaMode BLEND is shown as letting rays through"},
         {blended && texture, "alphaMode BLEND is shown as letting rays through, and nothing is "
                              "where the texture's alpha is below 0.5"},
-        {!emission, "emissiveTexture is not used, the surface sends out no light"},
     };
     lr_status status = LR_OK;
     for (size_t i = 0; !status && i < sizeof notes / sizeof *notes; i++)
         if (notes[i].applies)
             status = lr_import_note(import, "material \"%s\": %s", material->name, notes[i].text);
-    return status;
+    return status || !from ? status : gltf_maps(import, json, from, material);
 }
 
 /* ---- OBJ and the others -------------------------------------------------------------------- */
@@ -198,14 +237,22 @@ bool lr_import_has_numbers(const struct aiMaterial *from, const char *key, unsig
            found->mType != aiPTI_String;
 }
 
-static double number_of(const struct aiMaterial *from, const char *key, double fallback)
+/* The number under the key, of the material or of one of its textures. */
+static double number_in(const struct aiMaterial *from, const char *key, unsigned texture_type,
+                        double fallback)
 {
     ai_real value = 0;
     unsigned count = 1;
-    if (!lr_import_has_numbers(from, key, 0) ||
-        aiGetMaterialFloatArray(from, key, 0, 0, &value, &count) != aiReturn_SUCCESS || count < 1)
+    if (!lr_import_has_numbers(from, key, texture_type) ||
+        aiGetMaterialFloatArray(from, key, texture_type, 0, &value, &count) != aiReturn_SUCCESS ||
+        count < 1)
         return fallback;
     return isfinite(value) ? (double)value : fallback;
+}
+
+static double number_of(const struct aiMaterial *from, const char *key, double fallback)
+{
+    return number_in(from, key, 0, fallback);
 }
 
 static lr_color color_of(const struct aiMaterial *from, const char *key, double fallback,
@@ -226,7 +273,38 @@ static bool one_of(int model, const char *digits)
     return model >= 0 && model <= 9 && strchr(digits, '0' + model) != NULL;
 }
 
-static void mtl_material(const struct aiMaterial *from, lr_material *material)
+/* What MTL calls bump is often a picture of normals: one in colours counts as such. Its heights
+ * have no unit; white is a centimetre, times -bm. */
+static lr_status mtl_maps(lr_import *import, const struct aiMaterial *from, lr_material *material)
+{
+    const char *bump = _AI_MATKEY_OBJ_BUMPMULT_BASE;
+    double factor = clamp(number_in(from, bump, aiTextureType_HEIGHT, 1), -1000, 1000);
+    lr_map normals = {.amount = 1}, heights = {.amount = 0.01 * factor};
+    lr_status status = lr_import_map(import, from, aiTextureType_NORMALS, "normal map",
+                                     LR_MAP_NORMAL, normals, material);
+    if (!status && !material->maps[LR_MAP_NORMAL].given)
+        status = lr_import_map(import, from, aiTextureType_HEIGHT, "bump map", LR_MAP_BUMP, heights,
+                               material);
+    if (!status && material->maps[LR_MAP_BUMP].given &&
+        lr_import_is_colored(import, material->maps[LR_MAP_BUMP].texture)) {
+        normals.amount = factor;
+        material->maps[LR_MAP_BUMP] = (lr_map){.given = false};
+        status = lr_import_map(import, from, aiTextureType_HEIGHT, "bump map", LR_MAP_NORMAL,
+                               normals, material);
+    }
+    struct aiString path;
+    bool shines = aiGetMaterialString(from, AI_MATKEY_TEXTURE(aiTextureType_EMISSIVE, 0), &path) ==
+                  aiReturn_SUCCESS;
+    if (status || !shines)
+        return status;
+    /* Without Ke the picture is the light. */
+    if (greatest(material->emission) == 0)
+        material->emission = grey(1);
+    return emission_map(import, from, material);
+}
+
+static lr_status mtl_material(lr_import *import, const struct aiMaterial *from,
+                              lr_material *material)
 {
     int model = 2;
     unsigned count = 1;
@@ -249,6 +327,7 @@ static void mtl_material(const struct aiMaterial *from, lr_material *material)
     material->transmit = lr_vec3_scale(filter, 1 - opacity);
     material->ior = bends && ior >= 0.01 && ior <= 100 ? ior : 1;
     material->fresnel = one_of(model, "57");
+    return mtl_maps(import, from, material);
 }
 
 /* PLY and STL have no materials: the colour of the scene language's default. */
@@ -296,13 +375,13 @@ lr_status lr_import_material(lr_import *import, uint32_t index, uint32_t *materi
     if (status)
         return status;
     if (import->json)
-        status = gltf_material(import, lr_gltf_material(import, slot), added);
+        status = gltf_material(import, lr_gltf_material(import, slot), from, added);
     else if (from && import->kind == LR_IMPORT_OBJ)
-        mtl_material(from, added);
+        status = mtl_material(import, from, added);
     else
         plain_material(added);
     added->ambient = added->diffuse;
     if (!status && from)
-        status = lr_import_texture(import, from, added->name, added);
+        status = lr_import_texture(import, from, added);
     return status;
 }

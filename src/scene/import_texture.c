@@ -1,4 +1,4 @@
-/* Textures of the colour; others are noted. */
+/* Textures of materials; those that nothing shows are noted. */
 #include "scene/import_internal.h"
 
 #include <assimp/material.h>
@@ -66,7 +66,7 @@ static const struct aiTexture *embedded(const struct aiScene *scene, const char 
 }
 
 static lr_status load(lr_import *import, const char *path, lr_wrap wrap_u, lr_wrap wrap_v,
-                      uint32_t *texture, lr_error *error)
+                      lr_texels texels, uint32_t *texture, lr_error *error)
 {
     if (path[0] == '*') {
         const struct aiTexture *inside = embedded(import->scene, path);
@@ -76,76 +76,125 @@ static lr_status load(lr_import *import, const char *path, lr_wrap wrap_u, lr_wr
         char name[200];
         snprintf(name, sizeof name, "%s: picture %.20s", import->shown, path + 1);
         return lr_texture_decode(import->builder, inside->pcData, inside->mWidth, name, wrap_u,
-                                 wrap_v, texture, error);
+                                 wrap_v, texels, texture, error);
     }
     char *file;
     lr_status status = lr_import_resolve(import, path, &file, error);
     if (!status)
-        status = lr_texture_load(import->builder, file, wrap_u, wrap_v, texture, error);
+        status = lr_texture_load(import->builder, file, wrap_u, wrap_v, texels, texture, error);
     free(file);
     return status;
 }
 
-static lr_status note_others(lr_import *import, const struct aiMaterial *from, const char *name)
+/* What a material has and is not shown. */
+static lr_status note_others(lr_import *import, const struct aiMaterial *from,
+                             const lr_material *material)
 {
-    static const struct {
+    const lr_map *maps = material->maps;
+    bool normals = maps[LR_MAP_NORMAL].given, heights = maps[LR_MAP_BUMP].given || normals;
+    bool light = maps[LR_MAP_EMISSION].given;
+    const struct {
         enum aiTextureType type;
+        bool shown;
         const char *what;
     } others[] = {
-        {aiTextureType_NORMALS, "normal map"},
-        {aiTextureType_HEIGHT, "bump map"},
-        {aiTextureType_SPECULAR, "specular map"},
-        {aiTextureType_OPACITY, "opacity map"},
-        {aiTextureType_EMISSIVE, "emissive map"},
-        {aiTextureType_REFLECTION, "reflection map"},
-        {aiTextureType_LIGHTMAP, "occlusion map"},
-        {aiTextureType_SHININESS, "shininess map"},
-        {aiTextureType_DISPLACEMENT, "displacement map"},
+        {aiTextureType_NORMALS, normals, "normal map"},
+        {aiTextureType_HEIGHT, heights, "bump map"},
+        {aiTextureType_SPECULAR, false, "specular map"},
+        {aiTextureType_OPACITY, false, "opacity map"},
+        {aiTextureType_EMISSIVE, light, "emissive map"},
+        {aiTextureType_REFLECTION, false, "reflection map"},
+        {aiTextureType_LIGHTMAP, false, "occlusion map"},
+        {aiTextureType_SHININESS, false, "shininess map"},
+        {aiTextureType_DISPLACEMENT, false, "displacement map"},
     };
     char list[200] = "";
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         struct aiString path;
-        if (!has_texture(from, others[i].type, &path))
+        if (others[i].shown || !has_texture(from, others[i].type, &path))
             continue;
         size_t used = strlen(list);
         snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", others[i].what);
     }
-    return list[0] ? lr_import_note(import, "material \"%s\": not shown: %s", name, list) : LR_OK;
+    return list[0] ? lr_import_note(import, "material \"%s\": not shown: %s", material->name, list)
+                   : LR_OK;
 }
 
-lr_status lr_import_texture(lr_import *import, const struct aiMaterial *from, const char *name,
-                            lr_material *material)
+/* Loads a material's texture of one type; *texture stays LR_NONE, after a note, when it cannot be
+ * shown. `what` stands for it in notes. */
+static lr_status load_type(lr_import *import, const struct aiMaterial *from,
+                           enum aiTextureType type, const char *name, const char *what,
+                           lr_texels texels, uint32_t *texture)
 {
-    enum aiTextureType type;
     struct aiString path;
-    lr_status status = note_others(import, from, name);
-    if (status || !find_color_texture(from, &type, &path))
-        return status;
+    *texture = LR_NONE;
+    if (!has_texture(from, type, &path) || !path.data[0])
+        return LR_OK;
     if (integer_of(from, _AI_MATKEY_UVWSRC_BASE, type, 0) != 0)
         return lr_import_note(import,
-                              "material \"%s\": its texture is not shown: it goes by another set "
+                              "material \"%s\": its %s is not shown: it goes by another set "
                               "of texture coordinates than the first",
-                              name);
+                              name, what);
     struct aiUVTransform moved;
+    lr_status status = LR_OK;
     if (lr_import_has_numbers(from, _AI_MATKEY_UVTRANSFORM_BASE, type) &&
         aiGetMaterialUVTransform(from, AI_MATKEY_UVTRANSFORM(type, 0), &moved) == aiReturn_SUCCESS)
         status = lr_import_note(import,
-                                "material \"%s\": the shift, turn and scale of its texture are "
+                                "material \"%s\": the shift, turn and scale of its %s are "
                                 "left out",
-                                name);
+                                name, what);
     lr_wrap wrap_u = wrap_of(from, _AI_MATKEY_MAPPINGMODE_U_BASE, type);
     lr_wrap wrap_v = wrap_of(from, _AI_MATKEY_MAPPINGMODE_V_BASE, type);
     lr_error error = {0};
-    uint32_t texture;
-    lr_status loaded = status ? status : load(import, path.data, wrap_u, wrap_v, &texture, &error);
+    uint32_t loaded_to;
+    lr_status loaded =
+        status ? status : load(import, path.data, wrap_u, wrap_v, texels, &loaded_to, &error);
     if (loaded == LR_OK) {
-        material->color.kind = LR_PATTERN_IMAGE;
-        material->color.texture = texture;
+        *texture = loaded_to;
         return LR_OK;
     }
     if (status || loaded == LR_ERROR_MEMORY)
         return status ? status : lr_fail(import->error, loaded, "%s", error.message);
     char reason[300];
     lr_import_shown(reason, sizeof reason, error.message);
-    return lr_import_note(import, "material \"%s\": without its texture: %s", name, reason);
+    return lr_import_note(import, "material \"%s\": without its %s: %s", name, what, reason);
+}
+
+lr_status lr_import_map(lr_import *import, const struct aiMaterial *from, unsigned type,
+                        const char *what, lr_map_kind kind, lr_map map, lr_material *material)
+{
+    lr_status status = load_type(import, from, (enum aiTextureType)type, material->name, what,
+                                 lr_map_texels(kind), &map.texture);
+    map.given = map.texture != LR_NONE;
+    if (!status && map.given)
+        material->maps[kind] = map;
+    return status;
+}
+
+bool lr_import_is_colored(const lr_import *import, uint32_t texture)
+{
+    const lr_texture *t = &import->builder->scene->textures[texture];
+    bool colored = false;
+    for (size_t i = 0; i < (size_t)t->width * t->height && !colored; i++)
+        colored = t->bytes ? t->bytes[4 * i] != t->bytes[4 * i + 1] ||
+                                 t->bytes[4 * i] != t->bytes[4 * i + 2]
+                           : t->floats[3 * i] != t->floats[3 * i + 1] ||
+                                 t->floats[3 * i] != t->floats[3 * i + 2];
+    return colored;
+}
+
+lr_status lr_import_texture(lr_import *import, const struct aiMaterial *from, lr_material *material)
+{
+    enum aiTextureType type;
+    struct aiString path;
+    uint32_t texture;
+    lr_status status = note_others(import, from, material);
+    if (status || !find_color_texture(from, &type, &path))
+        return status;
+    status = load_type(import, from, type, material->name, "texture", LR_TEXELS_COLORS, &texture);
+    if (!status && texture != LR_NONE) {
+        material->color.kind = LR_PATTERN_IMAGE;
+        material->color.texture = texture;
+    }
+    return status;
 }

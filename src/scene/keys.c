@@ -205,6 +205,52 @@ const lr_record lr_pattern_records[] = {
 };
 const uint32_t lr_pattern_record_count = COUNT(lr_pattern_records);
 
+#define MAP_IMAGE                                                                                  \
+    {                                                                                              \
+        "image", LR_FIELD_TEXT, LR_REQUIRED, MEMBER(lr_map_draft, image),                          \
+            .doc = "The file of the picture, as seen from the scene's folder."                     \
+    }
+#define MAP_WRAP                                                                                   \
+    {                                                                                              \
+        "wrap", LR_FIELD_CHOICE, 0, DEFAULT(0), MEMBER(lr_map_draft, wrap),                        \
+            .choices = wraps, .doc = "How the picture goes on beyond its edges."                   \
+    }
+#define MAP_CHANNEL(index_)                                                                        \
+    {                                                                                              \
+        "channel", LR_FIELD_CHOICE, 0, DEFAULT(index_), MEMBER(lr_map_draft, map.channel),         \
+            .choices = channels, .doc = "Which of the picture's channels it is."                   \
+    }
+
+static const char *const channels[] = {"red", "green", "blue", "alpha", NULL};
+static const lr_field normal_map_fields[] = {
+    MAP_IMAGE,
+    {"scale", LR_FIELD_NUMBER, 0, RANGE(-1000, 1000), DEFAULT(1), MEMBER(lr_map_draft, map.amount),
+     .doc = "Multiplies how far normals lean; 0: not at all."},
+    MAP_WRAP,
+};
+static const lr_field bump_map_fields[] = {
+    MAP_IMAGE,
+    {"height", LR_FIELD_NUMBER, 0, RANGE(-1e6, 1e6), DEFAULT(0.01),
+     MEMBER(lr_map_draft, map.amount),
+     .doc = "Metres from black to white; below 0, white is deepest."},
+    MAP_WRAP,
+};
+static const lr_field roughness_map_fields[] = {MAP_IMAGE, MAP_CHANNEL(LR_CHANNEL_GREEN), MAP_WRAP};
+static const lr_field metallic_map_fields[] = {MAP_IMAGE, MAP_CHANNEL(LR_CHANNEL_BLUE), MAP_WRAP};
+static const lr_field emission_map_fields[] = {MAP_IMAGE, MAP_WRAP};
+const lr_record lr_map_records[LR_MAP_COUNT] = {
+    RECORD("normal_map", "Which way the surface faces.", normal_map_fields, LR_MAP_NORMAL),
+    RECORD("bump_map", "Heights on the surface.", bump_map_fields, LR_MAP_BUMP),
+    RECORD("roughness_map", "Where the surface is rough.", roughness_map_fields, LR_MAP_ROUGHNESS),
+    RECORD("metallic_map", "Where the surface is metal.", metallic_map_fields, LR_MAP_METALLIC),
+    RECORD("emission_map", "Where the surface shines.", emission_map_fields, LR_MAP_EMISSION),
+};
+#define MAP(name_, kind_, doc_)                                                                    \
+    {                                                                                              \
+        .name = (name_), .type = LR_FIELD_MAP, .flags = LR_DERIVED,                                \
+        .record = &lr_map_records[kind_], .derived = "none", .doc = (doc_)                         \
+    }
+
 #define SHARE(name_, member_, doc_)                                                                \
     {                                                                                              \
         name_, LR_FIELD_NUMBER, 0, RANGE(0, 1), DEFAULT(0), MEMBER(lr_material, member_),          \
@@ -261,6 +307,11 @@ static const lr_field material_fields[] = {
     {"sheen", LR_FIELD_COLOR, 0, RANGE(0, 1), DEFAULT(0), MEMBER(lr_material, sheen),
      .doc = "Colour of fibres that stand out of cloth."},
     SHARE("sheen_roughness", sheen_roughness, "Roughness of the fibres."),
+    MAP("normal_map", LR_MAP_NORMAL, "A picture of the way that the surface faces."),
+    MAP("bump_map", LR_MAP_BUMP, "A picture of heights on the surface."),
+    MAP("roughness_map", LR_MAP_ROUGHNESS, "A picture that multiplies `roughness`."),
+    MAP("metallic_map", LR_MAP_METALLIC, "A picture that multiplies `metallic`."),
+    MAP("emission_map", LR_MAP_EMISSION, "A picture that multiplies `emission`, which is 1 then."),
 };
 const lr_record lr_material_record =
     RECORD("material", "How a surface and its inside look.", material_fields, 0);

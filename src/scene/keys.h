@@ -22,6 +22,7 @@ typedef enum lr_field_type {
     /* The rest is structure, which the record's own reader takes from its node. */
     LR_FIELD_RECORD,     /* a mapping as `record` says */
     LR_FIELD_PAINT,      /* a colour or a pattern */
+    LR_FIELD_MAP,        /* a file, or a mapping as `record` says */
     LR_FIELD_BACKGROUND, /* a colour or a record of backgrounds */
     LR_FIELD_MATERIAL,   /* a name or a mapping */
     LR_FIELD_MATERIALS,  /* name: material, ... */
@@ -62,10 +63,11 @@ struct lr_record {
     const char *doc;
     const lr_field *fields;
     uint32_t count; /* <= LR_FIELDS_MAX */
-    int kind;       /* lr_object_kind, lr_light_kind, lr_pattern_kind or lr_background_kind */
+    int kind;       /* lr_object_kind, lr_light_kind, lr_pattern_kind, lr_map_kind or
+                          lr_background_kind */
 };
 
-/* What the records of objects, lights, patterns and backgrounds are read into before they are completed. */
+/* What the records of objects, lights, patterns, maps and backgrounds are read into before they are completed. */
 typedef struct lr_object_draft {
     lr_object object;
     lr_vec3 translate, scale;
@@ -86,6 +88,12 @@ typedef struct lr_pattern_draft {
     uint32_t wrap;     /* lr_wrap */
 } lr_pattern_draft;
 
+typedef struct lr_map_draft {
+    lr_map map;
+    const char *image; /* as written */
+    uint32_t wrap;     /* lr_wrap */
+} lr_map_draft;
+
 typedef struct lr_background_draft {
     lr_background background;
     const char *image; /* as written */
@@ -104,6 +112,8 @@ typedef struct lr_scene_draft {
 
 extern const lr_record lr_scene_record, lr_camera_record, lr_image_record, lr_fog_record,
     lr_material_record, lr_rotation_record, lr_group_record;
+/* Of maps: the same order as lr_map_kind, which is also that of these keys of a material. */
+extern const lr_record lr_map_records[LR_MAP_COUNT];
 extern const lr_record lr_background_records[], lr_pattern_records[], lr_light_records[], lr_object_records[];
 extern const uint32_t lr_background_record_count, lr_pattern_record_count, lr_light_record_count, lr_object_record_count;
 

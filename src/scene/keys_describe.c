@@ -21,6 +21,9 @@ const lr_record *lr_record_at(uint32_t index)
     if (index < lr_pattern_record_count)
         return &lr_pattern_records[index];
     index -= lr_pattern_record_count;
+    if (index < LR_MAP_COUNT)
+        return &lr_map_records[index];
+    index -= LR_MAP_COUNT;
     if (index < lr_light_record_count)
         return &lr_light_records[index];
     index -= lr_light_record_count;
@@ -135,6 +138,9 @@ const char *lr_field_expected(const lr_field *field, char buffer[LR_EXPECTED_MAX
         snprintf(buffer, size,
                  "a colour ([r, g, b], one number, \"#rrggbb\" or a name) or a pattern such as "
                  "{checker: [white, black]}");
+        break;
+    case LR_FIELD_MAP:
+        snprintf(buffer, size, "the file of a picture or a mapping such as {image: file}");
         break;
     case LR_FIELD_BACKGROUND:
         snprintf(buffer, size,

@@ -46,6 +46,8 @@ static const struct {
     {"clearcoat_roughness", PBR},
     {"sheen", PBR},
     {"sheen_roughness", PBR},
+    {"roughness_map", DIFFUSE | DIELECTRIC | CONDUCTOR | PBR | THIN_GLASS},
+    {"metallic_map", PBR},
 };
 
 bool lr_model_has_key(lr_model model, const char *key)
@@ -135,7 +137,9 @@ static void approximate_conductor(lr_material *m)
 
 static void approximate_pbr(lr_material *m)
 {
-    double root = (m->ior - 1) / (m->ior + 1), metallic = m->metallic;
+    /* Where a picture tells what is metal, most is not. */
+    double root = (m->ior - 1) / (m->ior + 1);
+    double metallic = m->maps[LR_MAP_METALLIC].given ? 0 : m->metallic;
     double through = m->transmission * (1 - metallic);
     lr_color color = m->color.colors[0];
     color = (lr_color){fmin(color.x, 1), fmin(color.y, 1), fmin(color.z, 1)};

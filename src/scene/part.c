@@ -98,7 +98,8 @@ static lr_status place_texture(lr_scene_builder *builder, const lr_part *part, u
 {
     const lr_texture *from = &part->content->textures[index];
     if (lr_part_of(part->content, from->name))
-        return lr_texture_load(builder, from->name, from->wrap_u, from->wrap_v, placed, error);
+        return lr_texture_load(builder, from->name, from->wrap_u, from->wrap_v, from->texels,
+                               placed, error);
     return lr_texture_borrow(builder, from, placed, error);
 }
 
@@ -111,6 +112,9 @@ static bool place_material(lr_scene_builder *builder, const lr_material *from,
     *added = *from;
     if (from->color.kind == LR_PATTERN_IMAGE)
         added->color.texture = textures[from->color.texture];
+    for (int i = 0; i < LR_MAP_COUNT; i++)
+        if (from->maps[i].given)
+            added->maps[i].texture = textures[from->maps[i].texture];
     return copy_name(&added->name);
 }
 

@@ -105,7 +105,7 @@ uint32_t lr_default_material(lr_reader *reader);
 
 /* The texture of the file that `node`, the text `file`, names. */
 bool lr_read_picture(lr_reader *reader, const lr_node *node, const char *file, lr_wrap wrap_u,
-                     lr_wrap wrap_v, uint32_t *texture);
+                     lr_wrap wrap_v, lr_texels texels, uint32_t *texture);
 
 void lr_read_background(lr_reader *reader, const lr_node *node, const lr_field *field);
 void lr_read_lights(lr_reader *reader, const lr_node *node);

@@ -82,7 +82,7 @@ static void read_kind(lr_reader *reader, const lr_node *node, const lr_record *r
     background->kind = (lr_background_kind)record->kind;
     if (background->kind == LR_BACKGROUND_IMAGE &&
         (!lr_read_picture(reader, value, draft.image, LR_WRAP_REPEAT, LR_WRAP_CLAMP,
-                          &background->texture) ||
+                          LR_TEXELS_COLORS, &background->texture) ||
          !check_picture(reader, value, &reader->scene->textures[background->texture])))
         return;
     if (background->kind == LR_BACKGROUND_SKY && !check_sun(reader, value, background->sun))

@@ -12,13 +12,13 @@
 #include <string.h>
 
 bool lr_read_picture(lr_reader *reader, const lr_node *node, const char *file, lr_wrap wrap_u,
-                     lr_wrap wrap_v, uint32_t *texture)
+                     lr_wrap wrap_v, lr_texels texels, uint32_t *texture)
 {
     char *path;
     lr_error error = {0};
     lr_status status = lr_path_resolve(reader->report->name, file, &reader->options, &path, &error);
     if (!status)
-        status = lr_texture_load(&reader->builder, path, wrap_u, wrap_v, texture, &error);
+        status = lr_texture_load(&reader->builder, path, wrap_u, wrap_v, texels, texture, &error);
     free(path);
     if (status == LR_ERROR_MEMORY)
         reader->report->no_memory = true;
@@ -66,7 +66,8 @@ static bool read_paint(lr_reader *reader, const lr_node *node, const lr_field *f
     pattern->object_space = draft.space == 1;
     if (pattern->kind == LR_PATTERN_IMAGE)
         return lr_read_picture(reader, lr_given_value(&given, record, "image"), draft.image,
-                               (lr_wrap)draft.wrap, (lr_wrap)draft.wrap, &pattern->texture);
+                               (lr_wrap)draft.wrap, (lr_wrap)draft.wrap, LR_TEXELS_COLORS,
+                               &pattern->texture);
     if (pattern->kind == LR_PATTERN_GRADIENT) {
         pattern->direction = lr_vec3_sub(draft.to, pattern->origin);
         if (!(lr_vec3_length(pattern->direction) >= LR_LENGTH_MIN)) {
@@ -84,9 +85,49 @@ static bool read_paint(lr_reader *reader, const lr_node *node, const lr_field *f
     return true;
 }
 
+/* A picture that is not the colour: its file, or a mapping. */
+static void read_map(lr_reader *reader, const lr_node *node, const lr_record *record, lr_map *map)
+{
+    lr_map_draft draft = {.map.channel = LR_CHANNEL_RED};
+    lr_given given;
+    const lr_node *file = node;
+    if (node->kind == LR_NODE_MAP) {
+        if (!lr_read_record(reader, node, node, record, &draft, &given))
+            return;
+        file = lr_given_value(&given, record, "image");
+    } else {
+        const lr_field named = {record->name, LR_FIELD_TEXT,
+                                .derived = "the file of a picture or a mapping such as "
+                                           "{image: file}"};
+        lr_record_defaults(record, &draft);
+        if (!lr_read_value(reader, node, &named, &draft.image))
+            return;
+    }
+    *map = draft.map;
+    map->given =
+        lr_read_picture(reader, file, draft.image, (lr_wrap)draft.wrap, (lr_wrap)draft.wrap,
+                        lr_map_texels((lr_map_kind)record->kind), &map->texture);
+}
+
 static double greatest(lr_color c)
 {
     return fmax(c.x, fmax(c.y, c.z));
+}
+
+static void read_maps(lr_reader *reader, const lr_given *given, lr_material *material)
+{
+    for (int i = 0; i < LR_MAP_COUNT; i++) {
+        const lr_record *record = &lr_map_records[i];
+        const lr_node *node = lr_given_value(given, &lr_material_record, record->name);
+        if (node)
+            read_map(reader, node, record, &material->maps[i]);
+    }
+    lr_map *light = &material->maps[LR_MAP_EMISSION];
+    if (light->given && !lr_given_value(given, &lr_material_record, "emission"))
+        material->emission = (lr_color){1, 1, 1};
+    /* A picture of no light is none. */
+    if (greatest(material->emission) == 0)
+        *light = (lr_map){.given = false};
 }
 
 /* Reports keys that belong to other models. */
@@ -154,6 +195,7 @@ static void read_material(lr_reader *reader, const lr_node *node, const lr_node 
             material->color.colors[1] = material->color.colors[0];
     }
     check_keys(reader, &given, material->model);
+    read_maps(reader, &given, material);
     if (material->model != LR_MODEL_CLASSIC) {
         complete_model(reader, &given, material);
         return;

@@ -20,12 +20,21 @@ typedef lr_vec3 lr_color; /* x, y, z are red, green, blue; finite, >= 0 and <= L
 /* How a texture goes on beyond 0..1. */
 typedef enum lr_wrap { LR_WRAP_REPEAT, LR_WRAP_CLAMP, LR_WRAP_MIRROR } lr_wrap;
 
+/* What the bytes of a texture stand for. Floats are what they are, but for normals, which lie
+ * between 0 and 1. */
+typedef enum lr_texels {
+    LR_TEXELS_COLORS,  /* sRGB */
+    LR_TEXELS_NUMBERS, /* byte / 255 */
+    LR_TEXELS_NORMALS, /* (byte - 128) / 127, at least -1: 128, 128, 255 is straight up */
+} lr_texels;
+
 /* A picture for surfaces. Coordinates (0, 0) are the top left corner of the top left texel. */
 typedef struct lr_texture {
     char *name; /* the file that stands in messages */
     uint32_t width, height;
     lr_wrap wrap_u, wrap_v;
-    uint8_t *bytes; /* 4 a texel, top row first: sRGB red, green, blue, and alpha; or NULL, and */
+    lr_texels texels;
+    uint8_t *bytes; /* 4 a texel, top row first: red, green, blue, and alpha; or NULL, and */
     float *floats;  /* 3 a texel, top row first: linear red, green, blue >= 0 */
     bool borrowed;  /* texels of a part of the scene */
     /* Of floats: the first texel that held no colour and was changed, and one of its samples; its
@@ -67,6 +76,30 @@ typedef struct lr_pattern {
     lr_vec3 direction; /* stripes: across them; rings: their axis; gradient: from origin to where
                           colors[1] is. Not zero. */
 } lr_pattern;
+
+/* What a picture may shape beside the colour. */
+typedef enum lr_map_kind {
+    LR_MAP_NORMAL,    /* in tangent space, y up; `amount` multiplies x and y */
+    LR_MAP_BUMP,      /* heights, in red; `amount` is that of white, in metres */
+    LR_MAP_ROUGHNESS, /* a channel multiplies `roughness`; only for paths, as the next is */
+    LR_MAP_METALLIC,  /* ... `metallic` */
+    LR_MAP_EMISSION,  /* multiplies `emission` */
+    LR_MAP_COUNT,
+} lr_map_kind;
+
+typedef enum lr_channel {
+    LR_CHANNEL_RED,
+    LR_CHANNEL_GREEN,
+    LR_CHANNEL_BLUE,
+    LR_CHANNEL_ALPHA,
+} lr_channel;
+
+typedef struct lr_map {
+    bool given;
+    lr_channel channel;
+    uint32_t texture;
+    double amount;
+} lr_map;
 
 typedef enum lr_highlight { LR_HIGHLIGHT_BLINN, LR_HIGHLIGHT_PHONG } lr_highlight;
 
@@ -116,6 +149,7 @@ typedef struct lr_material {
     double metallic, transmission, clearcoat, clearcoat_roughness; /* pbr: 0..1 */
     lr_color sheen;                                                /* pbr: 0..1 */
     double sheen_roughness;
+    lr_map maps[LR_MAP_COUNT]; /* as lr_map_kind */
 } lr_material;
 
 typedef enum lr_object_kind {
@@ -278,6 +312,9 @@ struct lr_scene {
 
 /* As the scene language calls it. */
 const char *lr_object_kind_name(lr_object_kind kind);
+
+/* Whether its normals are not those of the surface. */
+bool lr_material_has_relief(const lr_material *material);
 
 /* Whether it fills more than a point or a single direction. */
 bool lr_light_is_soft(const lr_light *light);

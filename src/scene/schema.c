@@ -146,6 +146,9 @@ static json_t *field_schema(schema *s, const lr_field *field)
         node = moving(s, any_of(s, reference(s, "color"), reference(s, "pattern")));
         fallback = numbers(s, d, 3);
         break;
+    case LR_FIELD_MAP:
+        node = any_of(s, typed(s, "string"), record_schema(s, field->record));
+        break;
     case LR_FIELD_BACKGROUND:
         node = moving(s, any_of(s, reference(s, "color"), reference(s, "background")));
         fallback = put(s, json_object(), "gradient",

@@ -115,9 +115,10 @@ no_memory:
 
 /* Makes the image the scene's next texture. */
 static lr_status add(lr_scene_builder *builder, const lr_image *image, const char *name,
-                     lr_wrap wrap_u, lr_wrap wrap_v, uint32_t *index, lr_error *error)
+                     lr_wrap wrap_u, lr_wrap wrap_v, lr_texels texels, uint32_t *index,
+                     lr_error *error)
 {
-    lr_texture texture = {.wrap_u = wrap_u, .wrap_v = wrap_v};
+    lr_texture texture = {.wrap_u = wrap_u, .wrap_v = wrap_v, .texels = texels};
     lr_texture *added = NULL;
     lr_status status = fill(builder, image, name, &texture, error);
     if (!status) {
@@ -155,6 +156,13 @@ lr_status lr_texture_borrow(lr_scene_builder *builder, const lr_texture *from, u
     return LR_OK;
 }
 
+lr_texels lr_map_texels(lr_map_kind kind)
+{
+    return kind == LR_MAP_NORMAL     ? LR_TEXELS_NORMALS
+           : kind == LR_MAP_EMISSION ? LR_TEXELS_COLORS
+                                     : LR_TEXELS_NUMBERS;
+}
+
 /* Reads the picture into a part with one user. */
 static lr_status read_part(const lr_scene_builder *builder, const char *path, lr_part **part,
                            lr_error *error)
@@ -171,7 +179,8 @@ static lr_status read_part(const lr_scene_builder *builder, const char *path, lr
     }
     lr_status status = lr_image_read(path, &image, error);
     if (!status)
-        status = add(&own, &image, path, LR_WRAP_REPEAT, LR_WRAP_REPEAT, &index, error);
+        status = add(&own, &image, path, LR_WRAP_REPEAT, LR_WRAP_REPEAT, LR_TEXELS_COLORS, &index,
+                     error);
     lr_image_free(&image);
     if (!status) {
         *part = lr_part_create(own.scene, &files, false);
@@ -183,12 +192,13 @@ static lr_status read_part(const lr_scene_builder *builder, const char *path, lr
 }
 
 lr_status lr_texture_load(lr_scene_builder *builder, const char *path, lr_wrap wrap_u,
-                          lr_wrap wrap_v, uint32_t *texture, lr_error *error)
+                          lr_wrap wrap_v, lr_texels texels, uint32_t *texture, lr_error *error)
 {
     const lr_scene *scene = builder->scene;
     for (uint32_t i = 0; i < scene->texture_count; i++) {
         const lr_texture *known = &scene->textures[i];
-        if (known->wrap_u == wrap_u && known->wrap_v == wrap_v && !strcmp(known->name, path)) {
+        if (known->wrap_u == wrap_u && known->wrap_v == wrap_v && known->texels == texels &&
+            !strcmp(known->name, path)) {
             *texture = i;
             return LR_OK;
         }
@@ -207,6 +217,7 @@ lr_status lr_texture_load(lr_scene_builder *builder, const char *path, lr_wrap w
         lr_texture *added = &builder->scene->textures[*texture];
         added->wrap_u = wrap_u;
         added->wrap_v = wrap_v;
+        added->texels = texels;
         for (uint32_t i = 0; i < content->note_count && good; i++)
             good = lr_scene_add_note(builder, "%s", content->notes[i]);
     }
@@ -214,13 +225,13 @@ lr_status lr_texture_load(lr_scene_builder *builder, const char *path, lr_wrap w
 }
 
 lr_status lr_texture_decode(lr_scene_builder *builder, const void *bytes, size_t length,
-                            const char *name, lr_wrap wrap_u, lr_wrap wrap_v, uint32_t *texture,
-                            lr_error *error)
+                            const char *name, lr_wrap wrap_u, lr_wrap wrap_v, lr_texels texels,
+                            uint32_t *texture, lr_error *error)
 {
     lr_image image;
     lr_status status = lr_image_decode(bytes, length, name, &image, error);
     if (!status)
-        status = add(builder, &image, name, wrap_u, wrap_v, texture, error);
+        status = add(builder, &image, name, wrap_u, wrap_v, texels, texture, error);
     lr_image_free(&image);
     return status;
 }

@@ -354,6 +354,8 @@ static void put_material(lr_writer *writer, uint32_t index)
     fputs("}\n", out);
     if (m->one_sided)
         lr_writer_cannot(writer, "one-sided materials are written with two sides");
+    if (lr_material_has_relief(m))
+        lr_writer_cannot(writer, "pictures of normals and heights are left out");
     if (m->priority != 0)
         lr_writer_cannot(writer, "priorities of media are left out");
     if (m->alpha_cutoff > 0)

@@ -158,6 +158,8 @@ static void note_material(lr_writer *writer, const lr_material *m)
         lr_writer_cannot(writer, "light that surfaces show by themselves is left out");
     if (m->one_sided)
         lr_writer_cannot(writer, "one-sided materials are written with two sides");
+    if (lr_material_has_relief(m))
+        lr_writer_cannot(writer, "pictures of normals and heights are left out");
     if (m->alpha_cutoff > 0)
         lr_writer_cannot(writer, "surfaces cut out by alpha are written whole");
     if (m->highlight == LR_HIGHLIGHT_PHONG && lr_color_greatest(m->specular) > 0)

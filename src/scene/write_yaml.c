@@ -298,17 +298,24 @@ static void put_surroundings(lr_writer *writer)
     }
 }
 
+/* NULL when the texture is in no file of its own. */
+static const char *picture_ending(lr_writer *writer, const lr_texture *texture)
+{
+    const char *ending = lr_texture_ending(texture);
+    if (!ending)
+        lr_writer_cannot(writer, "pictures inside of models are not written, only their tint is");
+    else if (texture->wrap_u != texture->wrap_v)
+        lr_writer_cannot(writer, "pictures that go on in two ways are written with one of them");
+    return ending;
+}
+
 /* False when the texture is in no file of its own. */
 static bool put_picture(lr_writer *writer, const lr_pattern *pattern, const lr_record *record)
 {
     const lr_texture *texture = &writer->scene->textures[pattern->texture];
-    const char *ending = lr_texture_ending(texture);
-    if (!ending) {
-        lr_writer_cannot(writer, "pictures inside of models are not written, only their tint is");
+    const char *ending = picture_ending(writer, texture);
+    if (!ending)
         return false;
-    }
-    if (texture->wrap_u != texture->wrap_v)
-        lr_writer_cannot(writer, "pictures that go on in two ways are written with one of them");
     mapping map = {.out = writer->out};
     lr_pattern_draft draft = {.pattern = *pattern, .wrap = (uint32_t)texture->wrap_u};
     put_key(&map, "image");
@@ -354,6 +361,27 @@ static void put_properties(mapping *map, const lr_material *material)
     }
 }
 
+/* The pictures that are not the colour. */
+static void put_maps(lr_writer *writer, mapping *map, const lr_material *material)
+{
+    for (int i = 0; i < LR_MAP_COUNT; i++) {
+        const lr_map *m = &material->maps[i];
+        if (!m->given)
+            continue;
+        const lr_texture *texture = &writer->scene->textures[m->texture];
+        const char *ending = picture_ending(writer, texture);
+        if (!ending)
+            continue;
+        lr_map_draft draft = {.map = *m, .wrap = (uint32_t)texture->wrap_u};
+        mapping inner = {.out = writer->out};
+        put_key(map, lr_map_records[i].name);
+        put_key(&inner, "image");
+        put_file_name(writer, m->texture, ending);
+        put_record(&inner, &lr_map_records[i], &draft, NULL);
+        end_mapping(&inner);
+    }
+}
+
 static void put_material_name(lr_writer *writer, uint32_t index)
 {
     const char *name = writer->scene->materials[index].name;
@@ -377,6 +405,7 @@ static void put_materials(lr_writer *writer)
             put_paint(writer, &scene->materials[i].color);
         }
         put_properties(&map, &scene->materials[i]);
+        put_maps(writer, &map, &scene->materials[i]);
         end_mapping(&map);
         fputc('\n', writer->out);
     }

@@ -71,6 +71,9 @@ def material(color, diffuse, specular, transmit, shininess, ior, one_sided):
     real(0)
     whole(one_sided, 0, 0)
     real(*[0] * 6, *[0] * 9)
+    for _ in range(5):
+        whole(0, 0, 0)
+        real(0)
 
 
 def instance(kind, material, inward):

@@ -18,7 +18,7 @@ bsdf_sample sample_at(gpu_material m, uint material, boundary sides, uint seed, 
 {
     path_key key = key_of(uvec2(0u), seed, number);
     vec2 choices = sample_pair(key, 0u), spare = sample_pair(key, 1u);
-    bsdf b = load_bsdf(material, m, m.color0, sides, wo, spare.x);
+    bsdf b = load_bsdf(material, m, m.color0, vec2(1.0), sides, wo, spare.x);
     return sample_bsdf(b, wo, choices.x, sample_pair(key, 2u));
 }
 
@@ -36,7 +36,7 @@ void main()
     uint how = work.tile_x;
     vec4 a = vec4(0.0), b = vec4(0.0);
     if (how == how_evaluate) {
-        bsdf_value found = evaluate_bsdf(load_bsdf(first.w, m, m.color0, sides, wo,
+        bsdf_value found = evaluate_bsdf(load_bsdf(first.w, m, m.color0, vec2(1.0), sides, wo,
                                                    uintBitsToFloat(third.w)),
                                          wo, uintBitsToFloat(third.xyz));
         a = vec4(found.f, found.pdf);

@@ -22,10 +22,12 @@ layout(std430, set = 0, binding = LR_BIND_COUNT) readonly buffer RecordBlock
     gpu_object some_object[2];
     gpu_medium some_medium[2];
     gpu_material some_material[2];
+    gpu_maps some_maps[2];
     gpu_bsdf some_bsdf[2];
     gpu_texture some_texture[2];
     gpu_light some_light[2];
     gpu_emitter some_emitter[2];
+    gpu_emitter_map some_emitter_map[2];
     gpu_environment some_environment[2];
     gpu_sky_row some_sky_row[2];
     gpu_choice some_choice[2];
@@ -205,7 +207,7 @@ void main()
     put(floatBitsToUint(frame.lens.inv_blades)); put_vec3(frame.lens.right_step);
     put(floatBitsToUint(frame.lens.turns_across)); put_vec3(frame.lens.down_step);
     put(floatBitsToUint(frame.lens.turns_down));
-    put(frame.bsdfs); put(frame.albedo); put(frame.glass_albedo); put(frame.unused_bsdfs);
+    put(frame.bsdfs); put(frame.albedo); put(frame.glass_albedo); put(frame.maps);
     put(work.tile_x); put(work.tile_y); put(work.tile_width); put(work.tile_height);
     put(work.first_sample); put(work.count); put(work.first); put(work.light);
     put(work.light_count); put(work.first_lights); put(work.shadow_room);

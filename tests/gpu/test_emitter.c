@@ -131,6 +131,64 @@ static double polygon_irradiance(const double at[3], const double corners[][3], 
 #define LIT                                                                                        \
     "lights: []\nmaterials: {lamp: {emission: [7, 2, 1]}, front: {emission: 2, emits: front}}\n"
 
+/* Linear values of a picture that is brighter to the right and below, blended between four texels.
+ */
+static double picture_at(double u, double v)
+{
+    static const double texels[2][2] = {{0, 1}, {2, 3}};
+    double x = fmin(fmax(2 * u - 0.5, 0), 1), y = fmin(fmax(2 * v - 0.5, 0), 1);
+    double upper = texels[0][0] * (1 - x) + texels[0][1] * x;
+    double lower = texels[1][0] * (1 - x) + texels[1][1] * x;
+    return upper * (1 - y) + lower * y;
+}
+
+/* A surface that shines as a picture says: corner + a u + b v, with a to the right in the picture
+ * and b up; aimed at alone, whole or cut into the triangles of a mesh. */
+static void test_picture_of_light(void **state)
+{
+    static const double at[3] = {0.3, 0, -0.2}, corner[3] = {-1, 1.6, -0.5};
+    static const double a[3] = {1.5, 0.2, 0}, b[3] = {0.1, 0.3, 1.2};
+    static const float texels[12] = {0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3};
+    char path[128];
+    snprintf(path, sizeof path, "%s/light.pfm", folder);
+    FILE *f = fopen(path, "wb");
+    assert_non_null(f);
+    fputs("PF\n2 2\n-1\n", f); /* the lowest row first */
+    fwrite(texels + 6, 4, 6, f);
+    fwrite(texels, 4, 6, f);
+    fclose(f);
+    snprintf(path, sizeof path, "%s/light.obj", folder);
+    f = fopen(path, "wb");
+    assert_non_null(f);
+    fputs("v -1 1.6 -0.5\nv 0.5 1.8 -0.5\nv 0.6 2.1 0.7\nv -0.9 1.9 0.7\n"
+          "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n",
+          f);
+    fclose(f);
+
+    double n[3], expected = 0;
+    cross(a, b, n);
+    enum { STEPS = 600 };
+    for (int i = 0; i < STEPS * STEPS; i++) {
+        double u = (i % STEPS + 0.5) / STEPS, v = (i / STEPS + 0.5) / STEPS, to[3];
+        for (int k = 0; k < 3; k++)
+            to[k] = corner[k] + a[k] * u + b[k] * v - at[k];
+        double r2 = dot(to, to);
+        expected += 4 * picture_at(u, 1 - v) * to[1] * fabs(dot(to, n)) / (r2 * r2) / STEPS / STEPS;
+    }
+    static const char *const shapes[] = {
+        "rectangle: {corner: [-1, 1.6, -0.5], u: [1.5, 0.2, 0], v: [0.1, 0.3, 1.2], material: m}",
+        "mesh: {file: light.obj, material: m}",
+    };
+    for (int i = 0; i < 2; i++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "lights: []\nmaterials: {m: {emission: 4, emission_map: {image: light.pfm, wrap: "
+                 "clamp}}}\nobjects:\n  - %s\n",
+                 shapes[i]);
+        check_irradiance(*state, text, at, expected, 0.001);
+    }
+}
+
 static void test_flat(void **state)
 {
     static const double origin[3] = {0.3, 0, -0.2};
@@ -601,12 +659,19 @@ static void test_floor(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_flat),         cmocka_unit_test(test_sphere),
-        cmocka_unit_test(test_box_and_mesh), cmocka_unit_test(test_sides),
-        cmocka_unit_test(test_lights),       cmocka_unit_test(test_choice),
-        cmocka_unit_test(test_pdf),          cmocka_unit_test(test_spread),
-        cmocka_unit_test(test_picture),      cmocka_unit_test(test_sky),
-        cmocka_unit_test(test_floor),        cmocka_unit_test(test_validation_is_silent),
+        cmocka_unit_test(test_flat),
+        cmocka_unit_test(test_picture_of_light),
+        cmocka_unit_test(test_sphere),
+        cmocka_unit_test(test_box_and_mesh),
+        cmocka_unit_test(test_sides),
+        cmocka_unit_test(test_lights),
+        cmocka_unit_test(test_choice),
+        cmocka_unit_test(test_pdf),
+        cmocka_unit_test(test_spread),
+        cmocka_unit_test(test_picture),
+        cmocka_unit_test(test_sky),
+        cmocka_unit_test(test_floor),
+        cmocka_unit_test(test_validation_is_silent),
     };
     return cmocka_run_group_tests(tests, set_up, teardown);
 }

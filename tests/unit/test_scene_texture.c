@@ -72,8 +72,8 @@ static const lr_texture *decode(lr_scene_builder *builder, const void *bytes, si
 {
     uint32_t index = 77, before = builder->scene->texture_count;
     lr_error error = {0};
-    if (lr_texture_decode(builder, bytes, size, "a picture", LR_WRAP_CLAMP, LR_WRAP_MIRROR, &index,
-                          &error))
+    if (lr_texture_decode(builder, bytes, size, "a picture", LR_WRAP_CLAMP, LR_WRAP_MIRROR,
+                          LR_TEXELS_COLORS, &index, &error))
         fail_msg("%s", error.message);
     assert_int_equal(index, before);
     assert_int_equal(builder->scene->texture_count, before + 1);
@@ -154,12 +154,12 @@ static void test_floats(void **state)
 
     uint32_t index;
     lr_error error = {0};
-    if (lr_texture_load(&builder, CORPUS "hdr/pixels.hdr", LR_WRAP_REPEAT, LR_WRAP_REPEAT, &index,
-                        &error))
+    if (lr_texture_load(&builder, CORPUS "hdr/pixels.hdr", LR_WRAP_REPEAT, LR_WRAP_REPEAT,
+                        LR_TEXELS_COLORS, &index, &error))
         fail_msg("%s", error.message);
     assert_non_null(builder.scene->textures[index].floats);
-    if (lr_texture_load(&builder, CORPUS "exr/alpha.exr", LR_WRAP_REPEAT, LR_WRAP_REPEAT, &index,
-                        &error))
+    if (lr_texture_load(&builder, CORPUS "exr/alpha.exr", LR_WRAP_REPEAT, LR_WRAP_REPEAT,
+                        LR_TEXELS_COLORS, &index, &error))
         fail_msg("%s", error.message);
     assert_non_null(builder.scene->textures[index].floats);
     assert_non_null(strstr(builder.scene->notes[builder.scene->note_count - 1], "alpha"));
@@ -184,8 +184,9 @@ static void test_same_texture(void **state)
         {path, LR_WRAP_REPEAT, LR_WRAP_CLAMP, 3},  {path, LR_WRAP_CLAMP, LR_WRAP_REPEAT, 2}};
     for (size_t i = 0; i < sizeof loads / sizeof *loads; i++) {
         uint32_t index = 77;
-        assert_int_equal(
-            lr_texture_load(&builder, loads[i].path, loads[i].u, loads[i].v, &index, NULL), LR_OK);
+        assert_int_equal(lr_texture_load(&builder, loads[i].path, loads[i].u, loads[i].v,
+                                         LR_TEXELS_COLORS, &index, NULL),
+                         LR_OK);
         assert_int_equal(index, loads[i].index);
     }
     assert_int_equal(builder.scene->texture_count, 4);
@@ -197,8 +198,8 @@ static void expect_refused(const char *path, const char *words)
     lr_scene_builder builder = new_builder();
     lr_error error = {0};
     uint32_t index;
-    lr_status status =
-        lr_texture_load(&builder, path, LR_WRAP_REPEAT, LR_WRAP_REPEAT, &index, &error);
+    lr_status status = lr_texture_load(&builder, path, LR_WRAP_REPEAT, LR_WRAP_REPEAT,
+                                       LR_TEXELS_COLORS, &index, &error);
     assert_int_equal(status, LR_ERROR_FILE);
     if (!strstr(error.message, words) || strncmp(error.message, path, strlen(path)) != 0)
         fail_msg("expected \"%s\", got \"%s\"", words, error.message);
@@ -242,7 +243,7 @@ static void test_total(void **state)
     lr_error error = {0};
     uint32_t index;
     assert_int_equal(lr_texture_decode(&builder, file.bytes, file.size, "last", LR_WRAP_REPEAT,
-                                       LR_WRAP_REPEAT, &index, &error),
+                                       LR_WRAP_REPEAT, LR_TEXELS_COLORS, &index, &error),
                      LR_ERROR_FILE);
     assert_non_null(strstr(error.message, "last: with it the scene has over 268435456 texels"));
     lr_scene_destroy(builder.scene);

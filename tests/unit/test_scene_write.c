@@ -77,6 +77,12 @@ static void compare_materials(const lr_material *a, const lr_material *b)
     SAME(clearcoat_roughness);
     SAME(sheen);
     SAME(sheen_roughness);
+    for (int i = 0; i < LR_MAP_COUNT; i++) {
+        SAME(maps[i].given);
+        SAME(maps[i].channel);
+        SAME(maps[i].texture);
+        SAME(maps[i].amount);
+    }
 }
 
 static void compare_objects(const lr_object *a, const lr_object *b)
@@ -156,6 +162,7 @@ static void compare_textures(const lr_texture *a, const lr_texture *b)
     SAME(height);
     SAME(wrap_u);
     SAME(wrap_v);
+    SAME(texels);
     size_t texels = (size_t)a->width * a->height;
     if (a->bytes)
         assert_memory_equal(a->bytes, b->bytes, 4 * texels);
