@@ -37,6 +37,7 @@ bsdf_sample lattice_sample(gpu_material m, uint material, boundary sides, uint n
 
 void main()
 {
+    load_uniforms();
     uint i = gl_GlobalInvocationID.x;
     uvec4 first = rays_in[0], second = rays_in[1], third = rays_in[2u + i];
     wo = uintBitsToFloat(first.xyz);
