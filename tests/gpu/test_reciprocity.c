@@ -1,5 +1,7 @@
 /* The lobes of materials for paths with light and viewer exchanged, and against textbook formulas
  * in double precision. */
+#include <complex.h>
+
 #include "bsdf_tests.h"
 
 /* A black mirror under a clear coat, which is one GGX lobe that nothing is added to. */
@@ -241,11 +243,40 @@ static void test_formulas(void **state)
     close_harness(&h);
 }
 
+/* Fresnel's equations for a refractive index of n + i k, in complex numbers. */
+static double metal_value(double cosine, double complex index)
+{
+    double complex c2 = csqrt(1 - (1 - cosine * cosine) / (index * index));
+    double rs = cabs((cosine - index * c2) / (cosine + index * c2));
+    double rp = cabs((index * cosine - c2) / (index * cosine + c2));
+    return (rs * rs + rp * rp) / 2;
+}
+
+static void test_metals(void **state)
+{
+    lr_material m = material(LR_MODEL_CONDUCTOR, 1);
+    m.eta = (lr_color){0.2, 0.9, 2.9};
+    m.k = (lr_color){3.9, 2.4, 3.1};
+    harness h;
+    open_harness(&h, *state, &m, 1);
+    for (int i = 0; i < 12; i++) {
+        double cosine = (i / 2 + 0.5) / 6, ior = i % 2 ? 1.33 : 1;
+        asked.view =
+            seen_along(spherical(cosine, 1), 0, (view){.ior1 = (float)ior, .ior2 = 1}, false);
+        ask(&h, SAMPLE, LR_GROUP_SIZE, 0);
+        assert_near(found[0].b.x, metal_value(cosine, (0.2 + 3.9 * I) / ior), 1e-5);
+        assert_near(found[0].b.y, metal_value(cosine, (0.9 + 2.4 * I) / ior), 1e-5);
+        assert_near(found[0].b.z, metal_value(cosine, (2.9 + 3.1 * I) / ior), 1e-5);
+    }
+    close_harness(&h);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_reciprocity),
         cmocka_unit_test(test_formulas),
+        cmocka_unit_test(test_metals),
         cmocka_unit_test(test_validation_is_silent),
     };
     return cmocka_run_group_tests(tests, setup_device, NULL);
