@@ -216,6 +216,12 @@ bsdf load_bsdf(uint material, gpu_material m, vec3 color, vec2 gloss, boundary s
         }
         if ((has_delta || has_rough_glass) && p.model == LR_GPU_MODEL_DIELECTRIC)
             load_glass(p, vec3(1.0), m.transmit, sides, cosine, b);
+        if (has_metals) {
+            // As seen from the medium that they stand in.
+            float inv = sides.ior1 == 1.0 ? 1.0 : ex_rcp(sides.ior1);
+            p.eta *= inv;
+            p.k *= inv;
+        }
         if ((has_delta || has_gloss) && (p.model == LR_GPU_MODEL_CONDUCTOR || p.model == LR_GPU_MODEL_METAL))
             load_gloss(p, color, 1.0, 0.0, cosine, b);
         if (p.model == LR_GPU_MODEL_PBR) {

@@ -394,7 +394,7 @@ struct gpu_bsdf {
 LR_ROWS(gpu_bsdf, 5)
 #define LR_ALPHA_MIN 1.0e-3
 #define LR_SHEEN_ALPHA_MIN 1.0e-2
-#define LR_RATIO_FLAT 0.01 /* rough glass is smooth with a ratio of indices this close to 1 */
+#define LR_RATIO_FLAT 0.02 /* rough glass is smooth with a ratio of indices this close to 1 */
 
 /* What sample_bsdf found. */
 #define LR_BSDF_REFLECTS 1u
@@ -407,14 +407,19 @@ LR_ROWS(gpu_bsdf, 5)
 #define LR_ALBEDO_CELLS 47
 #define LR_ALBEDO_ROWS 2209u
 #define LR_ALBEDO_GGX 0u     /* reflected by GGX microfacets that absorb nothing */
-#define LR_ALBEDO_SCHLICK 1u /* the fifth root of the mean of Schlick's (1 - cos)^5 in that */
+#define LR_ALBEDO_SCHLICK 1u /* fifth root of the mean of Schlick's (1 - c)^5 in that, less 1 - cos */
 #define LR_ALBEDO_SHEEN 2u
 #define LR_ALBEDO_TABLES 3u
-/* Behind these, from row frame.glass_albedo on: what glass reflects and lets through, in
- * LR_GLASS_LAYERS squares by ratio of indices of refraction. */
-#define LR_GLASS_CELLS 24
-#define LR_GLASS_ROWS 576u
-#define LR_GLASS_LAYERS 24
+/* Behind these, from row frame.glass_albedo on: what glass reflects and lets through, against what GGX
+ * microfacets reflect that absorb nothing: LR_GLASS_INTO rectangles into what is denser, by the fourth
+ * root of |1 - ratio| / (1 + ratio) of the indices of refraction, and LR_GLASS_OUT_OF out of it. */
+#define LR_GLASS_COLUMNS 64
+#define LR_GLASS_ROWS 32
+#define LR_GLASS_CELLS 2048u
+#define LR_GLASS_INTO 17
+#define LR_GLASS_OUT_OF 33
+#define LR_GLASS_FIRST 0.315 /* a ratio of 1.02, */
+#define LR_GLASS_LAST 0.88   /* and of 4 */
 
 #define LR_GPU_WRAP_REPEAT 0u
 #define LR_GPU_WRAP_CLAMP 1u

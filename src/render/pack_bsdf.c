@@ -96,14 +96,14 @@ static void note_use(const lr_scene *scene, const lr_material *m, const struct g
     }
 }
 
-/* The values at the corners of each cell of `layers` squares. */
-static bool pack_table(const float *values, uint32_t cells, uint32_t layers,
+/* The values at the corners of each cell of `layers` rectangles. */
+static bool pack_table(const float *values, uint32_t columns, uint32_t rows, uint32_t layers,
                        lr_packed_scene *packed)
 {
-    uint32_t pitch = cells + 1;
-    for (uint32_t i = 0; i < layers * cells * cells; i++) {
-        uint32_t layer = i / (cells * cells), row = i / cells % cells, column = i % cells;
-        const float *at = &values[(layer * pitch + row) * pitch + column];
+    uint32_t pitch = columns + 1;
+    for (uint32_t i = 0; i < layers * rows * columns; i++) {
+        uint32_t layer = i / (rows * columns), row = i / columns % rows, column = i % columns;
+        const float *at = &values[(layer * (rows + 1) + row) * pitch + column];
         vec4 cell = {at[0], at[1], at[pitch], at[pitch + 1]};
         if (lr_pack_rows(packed, &cell, 1) == UINT32_MAX)
             return false;
@@ -123,11 +123,11 @@ static bool pack_tables(lr_packed_scene *packed)
     bool needed =
         use[LR_SPEC_GLOSS] || use[LR_SPEC_ROUGH_GLASS] || use[LR_SPEC_COAT] || use[LR_SPEC_SHEEN];
     for (size_t i = 0; needed && i < sizeof tables / sizeof *tables; i++)
-        if (!pack_table(tables[i], LR_ALBEDO_CELLS, 1, packed))
+        if (!pack_table(tables[i], LR_ALBEDO_CELLS, LR_ALBEDO_CELLS, 1, packed))
             return false;
     packed->frame.glass_albedo = packed->row_count;
-    return !use[LR_SPEC_ROUGH_GLASS] ||
-           pack_table(albedo_glass, LR_GLASS_CELLS, LR_GLASS_LAYERS, packed);
+    return !use[LR_SPEC_ROUGH_GLASS] || pack_table(albedo_glass, LR_GLASS_COLUMNS, LR_GLASS_ROWS,
+                                                   LR_GLASS_INTO + LR_GLASS_OUT_OF, packed);
 }
 
 lr_status lr_pack_bsdfs(const lr_scene *scene, lr_packed_scene *packed, lr_error *error)

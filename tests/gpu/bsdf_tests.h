@@ -7,6 +7,8 @@
 #include "bsdf.spv.h"
 
 #define MOST (1u << 20) /* answers of one question */
+#define FINE 16         /* each cell of a density is integrated by the square of it */
+#define PI 3.14159265358979323846
 
 typedef enum task { EVALUATE, SAMPLE, SUM } task;
 
@@ -91,6 +93,129 @@ static inline view view_at(uint32_t material, double cosine)
                   .ior1 = 1,
                   .ior2 = 1,
                   .seed = 7};
+}
+
+static inline lr_material material(lr_model model, double color)
+{
+    lr_color c = {color, color, color};
+    return (lr_material){.model = model,
+                         .color = {.colors = {c, c}, .size = 1, .direction = {0, 1, 0}},
+                         .transmit = model == LR_MODEL_DIELECTRIC || model == LR_MODEL_THIN_GLASS
+                                         ? (lr_color){1, 1, 1}
+                                         : (lr_color){0, 0, 0},
+                         .ior = 1.5};
+}
+
+static const view from_air = {.ior1 = 1, .ior2 = 1.5f}, from_glass = {.ior1 = 1.5f, .ior2 = 1};
+
+static inline lr_material rough(lr_model model, double color, double roughness)
+{
+    lr_material m = material(model, color);
+    m.roughness = roughness;
+    return m;
+}
+
+static inline lr_material classic(lr_highlight highlight)
+{
+    lr_material m = material(LR_MODEL_CLASSIC, 0);
+    m.specular = (lr_color){0.5, 0.5, 0.5};
+    m.shininess = 20;
+    m.highlight = highlight;
+    return m;
+}
+
+static inline vec3 spherical(double cosine, double angle)
+{
+    double sine = sqrt(1 - cosine * cosine);
+    return (vec3){(float)(sine * cos(angle)), (float)(sine * sin(angle)), (float)cosine};
+}
+
+static inline view seen_along(vec3 wo, uint32_t material, view sides, bool solid)
+{
+    return (view){.wo = {wo.x, wo.y, wo.z},
+                  .material = material,
+                  .ior1 = sides.ior1,
+                  .ior2 = sides.ior2,
+                  .solid = solid,
+                  .seed = 7};
+}
+
+/* The answers for `count` directions of light. */
+static inline void evaluate(harness *h, view seen, const vec3 *wi, uint32_t count)
+{
+    asked.view = seen;
+    uint32_t padded = (count + LR_GROUP_SIZE - 1) / LR_GROUP_SIZE * LR_GROUP_SIZE;
+    for (uint32_t i = 0; i < padded; i++) {
+        vec3 d = wi[i < count ? i : 0];
+        asked.ways[i] = (way){{d.x, d.y, d.z}, 0.5f};
+    }
+    ask(h, EVALUATE, padded, 0);
+}
+
+static inline double dot(vec3 a, vec3 b)
+{
+    return (double)a.x * b.x + (double)a.y * b.y + (double)a.z * b.z;
+}
+
+/* ---- Samples against their density --------------------------------------------------------- */
+
+static inline bool is_spread(answer a)
+{
+    return !(bits_of(a.b.w) & LR_BSDF_DELTA) && a.a.w > 0;
+}
+
+/* Where the point `i` of FINE is within its part, so that no two stand in a row: i's bits the other
+ * way round. */
+static inline double net_place(int i)
+{
+    return (((i & 1) << 3 | (i & 2) << 1 | (i & 4) >> 1 | (i & 8) >> 3) + 0.5) / FINE;
+}
+
+/* The upper end of chi-square for a chance of one in some 10,000 (Wilson and Hilferty, 1931). */
+static inline double chi_square_limit(double freedom)
+{
+    double a = 2 / (9 * freedom), b = 1 - a + 3.72 * sqrt(a);
+    return freedom * b * b * b;
+}
+
+static inline int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Counts of MOST samples in cells against the density integrated over them. */
+static inline void check_counts(const char *name, const double *expected, const double *counted,
+                                uint32_t count)
+{
+    static struct {
+        double expected, counted;
+    } cells[4096];
+    double sum = 0, sampled = 0;
+    assert_in_range(count, 1, 4096);
+    for (uint32_t i = 0; i < count; i++) {
+        cells[i].expected = expected[i] * MOST;
+        cells[i].counted = counted[i];
+        sum += expected[i];
+        sampled += counted[i] / MOST;
+    }
+    /* Cells of few are one. */
+    qsort(cells, count, sizeof *cells, compare_doubles);
+    double chi = 0, few = 0, few_counted = 0, freedom = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        few += cells[i].expected;
+        few_counted += cells[i].counted;
+        if (few < 20)
+            continue;
+        chi += (few_counted - few) * (few_counted - few) / few;
+        few = few_counted = 0;
+        freedom++;
+    }
+    double limit = chi_square_limit(fmax(freedom, 1));
+    print_message("%s: density %.5f in all, %.5f of samples, chi-square %.1f of at most %.1f\n",
+                  name, sum, sampled, chi, limit);
+    assert_true(sum <= 1.001);
+    assert_true(chi <= limit);
 }
 
 #endif
