@@ -103,7 +103,8 @@ typedef struct vec4 {
 #define LR_SPEC_HIGHLIGHT 54 /* ... or has the classic highlight, */
 #define LR_SPEC_OREN_NAYAR 55
 #define LR_SPEC_MODELS 56 /* ... or is not classic */
-#define LR_SPEC_COUNT 57
+#define LR_SPEC_MIX 57    /* ... or is a mix of others */
+#define LR_SPEC_COUNT 58
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -361,6 +362,18 @@ struct gpu_bsdf {
     uint unused2;
 };
 LR_ROWS(gpu_bsdf, 5)
+
+/* The materials that a mix is of; its gpu_material has the share of the second as its colour. */
+struct gpu_mix {
+    uint first; /* LR_GPU_MIX_NONE: it is no mix */
+    uint second;
+    uint unused0;
+    uint unused1;
+};
+LR_ROWS(gpu_mix, 1)
+#define LR_GPU_MIX_NONE 0xFFFFFFFFu
+#define LR_GPU_MIX_NESTING_MAX 4u
+
 #define LR_ALPHA_MIN 1.0e-3
 #define LR_SHEEN_ALPHA_MIN 1.0e-2
 #define LR_RATIO_FLAT 0.01 /* rough glass is smooth with a ratio of indices this close to 1 */
@@ -593,7 +606,7 @@ struct gpu_frame {
     uint bsdfs;        /* row of the gpu_bsdf of material 0 */
     uint albedo;       /* row of the tables, */
     uint glass_albedo; /* and of those of glass */
-    uint unused_bsdfs;
+    uint mixes;        /* row of the gpu_mix of material 0 */
 };
 LR_ROWS(gpu_frame, 30)
 #define LR_GPU_INSPECT_NORMAL 1u

@@ -103,10 +103,16 @@ void main()
     if (has_fog && wanted)
         film_accumulate(sum, fog);
 
-    shading here = shading_at(gpu_hit(at, met.t, met.primitive, hit ? met.object : 0u), ray);
+    uint depth = ray.state & LR_STATE_DEPTH, pair = pair_bounces + depth * pairs_a_bounce;
+    path_key key = path_key(path.pixel, path.order);
+    vec2 chances = sample_pair(key, pair + pair_roulette);
+    gpu_hit seen = gpu_hit(at, met.t, met.primitive, hit ? met.object : 0u);
+    shading here = shading_at(seen, ray, chances.y);
     surface s = here.at;
     gpu_material m = here.material;
     boundary sides = boundary_at(ray, s, here.ids, m.ior, here.absent);
+    if (has_mixes)
+        sides = sides_of_part(sides, m);
     bool solid_there = hit && !sides.hidden;
 
     // The light that is there.
@@ -122,12 +128,9 @@ void main()
         film_accumulate(sum, weight * found * power_heuristic(path.pdf, pdf));
 
     // The light of one source.
-    uint depth = ray.state & LR_STATE_DEPTH, pair = pair_bounces + depth * pairs_a_bounce;
-    path_key key = path_key(path.pixel, path.order);
     vec2 choices = sample_pair(key, pair + pair_choices);
     basis around = basis_around(here.lit_by);
     vec3 wo = to_local(around, -ray.direction);
-    vec2 chances = sample_pair(key, pair + pair_roulette);
     bsdf b = load_bsdf(here.ids.x, m, here.color, sides, wo, chances.y);
     vec3 origin = s.lit_from + here.n * s.offset;
     bool scatters = solid_there && !last;

@@ -30,7 +30,7 @@ static const lr_material *material_of(const lr_scene *scene, uint32_t object)
 
 static bool encloses_medium(const lr_material *m, const lr_primitive *p)
 {
-    return p->encloses && !lr_color_is_black(m->transmit) && m->model != LR_MODEL_THIN_GLASS;
+    return p->encloses && !lr_color_is_black(m->transmit) && !m->pane;
 }
 
 /* Packs the table of media and gives the ranks of the objects' media in ranks[]. */
@@ -101,7 +101,7 @@ static uint32_t flags_of(const lr_scene *scene, uint32_t object, const lr_primit
 {
     const lr_material *m = material_of(scene, object);
     bool inward = scene->objects[object].inward;
-    return (p->encloses && m->model != LR_MODEL_THIN_GLASS ? LR_FLAG_SOLID : 0) |
+    return (p->encloses && !m->pane ? LR_FLAG_SOLID : 0) |
            (lr_color_is_black(m->transmit) ? 0 : LR_FLAG_TRANSPARENT) |
            (scene->objects[object].shadow ? LR_FLAG_SHADOW : 0) | (inward ? LR_FLAG_INWARD : 0) |
            ((m->one_sided || inward) && p->sided ? LR_FLAG_ONE_SIDED : 0);

@@ -135,16 +135,21 @@ static void put_light(hasher *h, const lr_light *light)
     put_count(h, light->shadows);
 }
 
+static void put_pattern(hasher *h, const lr_pattern *p)
+{
+    put_count(h, p->kind);
+    put_count(h, p->object_space);
+    put_vector(h, p->colors[0]);
+    put_vector(h, p->colors[1]);
+    put_count(h, p->texture);
+    put_number(h, p->size);
+    put_vector(h, p->origin);
+    put_vector(h, p->direction);
+}
+
 static void put_material(hasher *h, const lr_material *m)
 {
-    put_count(h, m->color.kind);
-    put_count(h, m->color.object_space);
-    put_vector(h, m->color.colors[0]);
-    put_vector(h, m->color.colors[1]);
-    put_count(h, m->color.texture);
-    put_number(h, m->color.size);
-    put_vector(h, m->color.origin);
-    put_vector(h, m->color.direction);
+    put_pattern(h, &m->color);
     const lr_color *colors[] = {&m->ambient,  &m->diffuse,  &m->specular,  &m->reflect,
                                 &m->transmit, &m->emission, &m->absorption};
     for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
@@ -165,6 +170,11 @@ static void put_material(hasher *h, const lr_material *m)
     put_vector(h, m->eta);
     put_vector(h, m->k);
     put_vector(h, m->sheen);
+    if (m->model == LR_MODEL_MIX) {
+        put_count(h, m->mix.first);
+        put_count(h, m->mix.second);
+        put_pattern(h, &m->mix.weight);
+    }
 }
 
 static void put_shape(hasher *h, const lr_object *object)

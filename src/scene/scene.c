@@ -241,6 +241,7 @@ void lr_read_tree(const lr_tree *tree, lr_scene *scene, lr_report *report,
         freelocale(reader.locale);
     lr_mesh_files_free(&reader.files);
     lr_names_free(&reader.materials);
+    free(reader.mixes.items);
 }
 
 /* Reads the report's text into the scene; what is wrong goes to the report. */

@@ -16,6 +16,7 @@ typedef lr_vec3 lr_color; /* x, y, z are red, green, blue; finite, >= 0 and <= L
 #define LR_LIGHTS_MAX 256
 #define LR_MATERIALS_MAX 65535
 #define LR_NONE UINT32_MAX /* instead of an index */
+#define LR_MIX_NESTING_MAX 4 /* a mix of mixes of mixes of mixes */
 
 /* How a texture goes on beyond 0..1. */
 typedef enum lr_wrap { LR_WRAP_REPEAT, LR_WRAP_CLAMP, LR_WRAP_MIRROR } lr_wrap;
@@ -80,6 +81,7 @@ typedef enum lr_model {
     LR_MODEL_CONDUCTOR,
     LR_MODEL_PBR,
     LR_MODEL_THIN_GLASS,
+    LR_MODEL_MIX,
 } lr_model;
 
 typedef enum lr_metal {
@@ -116,6 +118,12 @@ typedef struct lr_material {
     double metallic, transmission, clearcoat, clearcoat_roughness; /* pbr: 0..1 */
     lr_color sheen;                                                /* pbr: 0..1 */
     double sheen_roughness;
+    bool pane; /* what it lets through goes straight on: it bounds no medium */
+    struct {
+        uint32_t first, second; /* materials without emission, holes and sides of their own */
+        lr_pattern weight;      /* share of the second: luminance, of which 1 counts at most */
+        uint32_t nesting;       /* 1: a mix of none; <= LR_MIX_NESTING_MAX */
+    } mix;
 } lr_material;
 
 typedef enum lr_object_kind {

@@ -23,6 +23,7 @@ layout(std430, set = 0, binding = LR_BIND_COUNT) readonly buffer RecordBlock
     gpu_medium some_medium[2];
     gpu_material some_material[2];
     gpu_bsdf some_bsdf[2];
+    gpu_mix some_mix[2];
     gpu_texture some_texture[2];
     gpu_light some_light[2];
     gpu_emitter some_emitter[2];
@@ -204,7 +205,7 @@ void main()
     put(floatBitsToUint(frame.lens.inv_blades)); put_vec3(frame.lens.right_step);
     put(floatBitsToUint(frame.lens.turns_across)); put_vec3(frame.lens.down_step);
     put(floatBitsToUint(frame.lens.turns_down));
-    put(frame.bsdfs); put(frame.albedo); put(frame.glass_albedo); put(frame.unused_bsdfs);
+    put(frame.bsdfs); put(frame.albedo); put(frame.glass_albedo); put(frame.mixes);
     put(work.tile_x); put(work.tile_y); put(work.tile_width); put(work.tile_height);
     put(work.first_sample); put(work.count); put(work.first); put(work.light);
     put(work.light_count); put(work.first_lights); put(work.shadow_room);

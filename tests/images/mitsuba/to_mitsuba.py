@@ -13,7 +13,8 @@ import mitsuba as mi
 import numpy as np
 import yaml
 
-import compensated as _  # registers it
+import compensated as _  # registers it, and this
+import mixed as _  # noqa: F811
 
 
 def take(mapping, **defaults):
@@ -80,12 +81,30 @@ def classic(m):
     return {"type": "blendbsdf", "weight": share, "matt": diffuse_bsdf, "mirror": mirror}
 
 
-def material(m):
+def mix(m, materials):
+    _, first, second, weight = take(m, model=0, first=None, second=None, weight=0.5)
+    return {"type": "mixed", "weight": float(weight),
+            "first": plain(named(first, materials), materials),
+            "second": plain(named(second, materials), materials)}
+
+
+def named(material_or_name, materials):
+    return materials[material_or_name] if isinstance(material_or_name, str) else material_or_name
+
+
+def plain(m, materials):
+    """The BSDF of what does not emit."""
+    model = m.get("model", "classic")
+    if model == "mix":
+        return mix(m, materials)
+    return {"classic": classic, "conductor": conductor, "dielectric": dielectric}[model](m)
+
+
+def material(m, materials):
     """The BSDF, and the emitter or None. Ours have two sides; what emits is black from behind."""
     m = dict(m)
     emission, emits = m.pop("emission", 0), m.pop("emits", "both")
-    model = m.get("model", "classic")
-    bsdf = {"classic": classic, "conductor": conductor, "dielectric": dielectric}[model](m)
+    bsdf = plain(m, materials)
     if not np.any(rgb(emission)):
         transmits = "dielectric" in bsdf.get("inner", bsdf)["type"]
         return bsdf if transmits else {"type": "twosided", "bsdf": bsdf}, None
@@ -143,7 +162,7 @@ SHAPES = {"rectangle": rectangle, "disk": disk, "box": box, "sphere": sphere, "m
 def shape(kind, o, materials, folder):
     o = dict(o)
     name = o.pop("material", {})
-    bsdf, emitter = material(materials[name] if isinstance(name, str) else name)
+    bsdf, emitter = material(named(name, materials), materials)
     moved = placement(o.pop("scale", 1), o.pop("rotate", [0, 0, 0]), o.pop("translate", [0, 0, 0]))
     if "file" in o:
         o["file"] = os.path.join(folder, o["file"])
