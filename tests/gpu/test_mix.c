@@ -114,6 +114,17 @@ static void test_patterns(void **state)
     }
 }
 
+/* A picture of one texel: 0.3, as floats are what they are. */
+static void write_weight(const char *path)
+{
+    static const float texel[] = {0.3F, 0.3F, 0.3F};
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    fputs("PF\n1 1\n-1.0\n", file);
+    fwrite(texel, sizeof texel, 1, file);
+    assert_int_equal(fclose(file), 0);
+}
+
 /* A wall in the same light from everywhere shows the parts' colours in the shares of the weights,
  * whose luminance counts. */
 static void test_shares(void **state)
@@ -128,6 +139,8 @@ static void test_shares(void **state)
          {0.8 - 0.7 * 0.3576, 0.1, 0.1 + 0.7 * 0.3576}},
         {"{model: mix, first: r, second: b, weight: {checker: [0.2, 0.6], size: 0.01}}",
          {0.8 - 0.7 * 0.4, 0.1, 0.1 + 0.7 * 0.4}},
+        {"{model: mix, first: r, second: b, weight: {image: test_mix.pfm, tint: 2}}",
+         {0.8 - 0.7 * 0.6, 0.1, 0.1 + 0.7 * 0.6}},
         /* 0.5 of r, 0.25 of each of b and of g */
         {"{model: mix, first: r, second: {model: mix, first: b, second: g}}",
          {0.5 * 0.8 + 0.5 * 0.1, 0.75 * 0.1 + 0.25 * 0.8, 0.75 * 0.1 + 0.25 * 0.8}},
@@ -137,6 +150,7 @@ static void test_shares(void **state)
           0.125 * 0.1 + 0.875 * (0.5 * 0.1 + 0.25 * 0.8 + 0.25 * 0.1),
           0.125 * 0.1 + 0.875 * (0.75 * 0.1 + 0.125 * 0.8 + 0.125 * 0.1)}},
     };
+    write_weight("test_mix.pfm");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char scene[1024];
         snprintf(scene, sizeof scene,
@@ -153,6 +167,7 @@ static void test_shares(void **state)
             assert_near(mean_of(&p, c), cases[i].expected[c], 0.002);
         free_picture(&p);
     }
+    remove("test_mix.pfm");
 }
 
 /* What reflects or lets through all light cannot be seen, and no more can its mixes. */
