@@ -63,7 +63,7 @@ layout(constant_id = LR_SPEC_OREN_NAYAR) const bool has_oren_nayar = true;
 layout(constant_id = LR_SPEC_MODELS) const bool has_models = true;
 layout(constant_id = LR_SPEC_MIX) const bool has_mixes = true;
 
-layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame; };
+layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame_block; };
 layout(set = 0, binding = LR_BIND_SCENE_TEXEL) uniform usamplerBuffer scene_texels;
 layout(std430, set = 0, binding = LR_BIND_SCENE_ROWS) readonly buffer SceneBlock
 {
@@ -87,7 +87,18 @@ layout(std430, set = 0, binding = LR_BIND_CELLS) buffer CellBlock { uint cells[]
 layout(std430, set = 0, binding = LR_BIND_ORDER) buffer OrderBlock { uint shadow_order[]; };
 layout(std430, set = 0, binding = LR_BIND_NOTES) buffer NoteBlock { gpu_notes notes; };
 
-layout(push_constant) uniform WorkBlock { gpu_work work; };
+layout(push_constant) uniform WorkBlock { gpu_work work_block; };
+
+// Copies of the two, made by the first statement of every main: outside all branches and loops lavapipe
+// loads a uniform once for all invocations, elsewhere once for each (docs/drivers.md).
+gpu_frame frame;
+gpu_work work;
+
+void load_uniforms()
+{
+    frame = frame_block;
+    work = work_block;
+}
 
 // Drivers give each thread a contiguous part of a dispatch's workgroups, so a picture with an empty
 // half would leave a thread idle. Even workgroups take the first half of the work, odd ones the

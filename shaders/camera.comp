@@ -8,12 +8,12 @@
 #include "bindings.glsl"
 #include "camera.glsl"
 #include "queue.glsl"
-#include "sampler.glsl"
 
 layout(local_size_x = LR_TILE_GROUP, local_size_y = LR_TILE_GROUP) in;
 
 void main()
 {
+    load_uniforms();
     uint y_group = spread_group(gl_WorkGroupID.y, gl_NumWorkGroups.y);
     uvec2 at = uvec2(gl_GlobalInvocationID.x, y_group * uint(LR_TILE_GROUP) + gl_LocalInvocationID.y);
     bool wanted = at.x < work.tile_width && at.y < work.tile_height;
@@ -30,12 +30,7 @@ void main()
         within = sample_position(pixel, number);
     if (has_inspect && (hidden(frame.inspect) & LR_GPU_INSPECT_PATHS) != 0u)
         within = sample_pair(key, pair_pixel);
-    camera_ray ray;
-    if (has_lens)
-        ray = lens_ray(vec2(pixel) + filtered_position(within), sample_pair(key, pair_lens),
-                       sample_pair(key, pair_time).x);
-    else
-        ray = pinhole_ray(vec2(pixel) + within);
+    camera_ray ray = sample_ray(pixel, within, key);
     uint in_film = work.film_first + at.y * work.step * work.film_pitch + at.x * work.step;
     // Squares of 8 x 8 pixels one after the other, those at the tile's edges smaller, so that rays that
     // are neighbours in the queue are so in the picture.

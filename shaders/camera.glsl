@@ -6,6 +6,7 @@
 #include "exact.glsl"
 #include "lens.glsl"
 #include "random.glsl"
+#include "sampler.glsl"
 
 // Where sample `index` of frame.samples lies in its pixel, in [0, 1)^2: stratified like a Hammersley
 // set, one sample in each of n columns and, for n = 2^k, in each of n rows, with a scramble of the
@@ -72,6 +73,18 @@ camera_ray lens_ray(vec2 position, vec2 lens, float time)
     vec3 towards = mix(ahead - aside * frame.lens.inv_focus, forward, bvec3(parallel));
     return camera_ray(origin + mix(aside, shift, bvec3(parallel)),
                       ex_normalize(mix(towards, turned, bvec3(around))));
+}
+
+// The ray of the sample that `key` tells, `within` its pixel.
+camera_ray sample_ray(uvec2 pixel, vec2 within, path_key key)
+{
+    camera_ray ray;
+    if (has_lens)
+        ray = lens_ray(vec2(pixel) + filtered_position(within), sample_pair(key, pair_lens),
+                       sample_pair(key, pair_time).x);
+    else
+        ray = pinhole_ray(vec2(pixel) + within);
+    return ray;
 }
 
 #endif

@@ -81,7 +81,7 @@ typedef struct vec4 {
 #define LR_SPEC_FALLOFF 32 /* some light fades with distance */
 #define LR_SPEC_INSPECT 33 /* the film gets frame.inspect instead of light */
 #define LR_SPEC_EXPLAIN 34 /* every ray and light is noted: gpu_notes */
-#define LR_SPEC_PATH 35    /* paths instead of ray trees: path.comp */
+#define LR_SPEC_PATH 35    /* paths instead of ray trees: path.comp, path_loop.comp */
 #define LR_SPEC_FEW 36     /* ... whose rays are to test all primitives */
 #define LR_SPEC_EMITTERS 37          /* paths have some light source to choose */
 #define LR_SPEC_DELTA_LIGHTS 38      /* ... from scene.lights; */
@@ -643,6 +643,9 @@ struct gpu_work {
     uint step;            /* camera rays: every so many-th pixel of a row, and row */
     uint film_first;      /* where the tile's first pixel is in the film, */
     uint film_pitch;      /* and how many pixels lie between it and the one below */
+    uint samples;         /* of each pixel, where one invocation takes them all, */
+    uint rounds;          /* and bounces that it takes in this pass; */
+    uint resumed;         /* 1: the queue holds where the pass before left the paths */
 };
 #define LR_SHADOW_THROUGH 4u /* light that no path finds otherwise comes through transparent objects */
 #define LR_SHADOW_LIGHTS 4 /* light l goes to segment l modulo this */
@@ -664,7 +667,8 @@ struct gpu_ray {
     uint state;
     vec3 weight;
     uint note;   /* of the ray that it comes from, in kernels that explain; in those that inspect
-                    the bits of its length */
+                    the bits of its length; in path_loop.comp twice the paths begun, and 1 if the
+                    last has not ended */
     uint media0; /* only in scenes with media: ranks of the media around the origin, two a word, in
                     no order, 0: none */
     uint media1;
@@ -731,8 +735,8 @@ struct gpu_counters {
     uint shadow_rays[4]; /* added to the segments */
     uint found;          /* entries that the kernels of trees finished */
     uint unfinished;     /* ... that a driver stopped half-way */
+    uint made_hits;      /* of camera rays, where they are not alone in their pass */
     uint unused0;
-    uint unused1;
 };
 LR_ROWS(gpu_counters, 7)
 

@@ -66,6 +66,7 @@ void test_triangle(uint i, bool valid, gpu_instance place)
 
 void main()
 {
+    load_uniforms();
     EACH_RAY
     {
         uint index = packet_index(k);

@@ -2,88 +2,17 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_shuffle : require
-// One bounce of each path in a queue (Kajiya, "The Rendering Equation", 1986): what its ray meets, the
-// light that is there, the light of one source, and the next ray. Light that can be found in both ways
-// is weighted by the power heuristic (Veach, 1997).
+// One bounce of each path in a queue.
 #include "gpu_layout.h"
 #include "bindings.glsl"
-#include "air.glsl"
-#include "basis.glsl"
-#include "bsdf_load.glsl"
-#include "emitter.glsl"
-#include "few.glsl"
-#include "film.glsl"
+#include "bounce.glsl"
 #include "found.glsl"
-#include "queue.glsl"
-#include "sampler.glsl"
-#include "shading.glsl"
-#include "shadow.glsl"
-#include "shadow_queue.glsl"
-#include "trace.glsl"
 
 layout(local_size_x = LR_GROUP_SIZE) in;
 
-// Bounces after which paths may end by chance, and how faint, 1 / roulette_margin, they must be: of what
-// was tried on the Cornell box this takes the least time to a given noise (docs/performance.md).
-const uint roulette_from = 3u;
-const float roulette_margin = 2.0;
-
-// The weight of what one of two ways found with density a, the other with b; 1 if only the first can.
-float power_heuristic(float a, float b)
-{
-    float a2 = a * a, b2 = b * b;
-    bool both = a > 0.0 && b > 0.0;
-    // Beyond the range of squares the greater one has it all.
-    float ratio = a > 1.0e9 || b > 1.0e9 ? (a > b ? 1.0 : 0.0) : a2 * ex_rcp(max(a2 + b2, 1.0e-20));
-    return both ? ratio : 1.0;
-}
-
-// In scenes without trees.
-nearest_hit nearest_listed(vec3 o, vec3 d)
-{
-    nearest_hit met;
-    if (has_few)
-        met = nearest_of_few(o, d);
-    else
-        met = trace_nearest(o, d);
-    return met;
-}
-
-// The optical depth of what stands in the way of light, as in shadow_rays.
-uvec3 listed_depth(vec3 o, light_sample light, bool wanted)
-{
-    uvec3 depth;
-    if (has_few) {
-        depth = uvec3(few_block(o, light.wi, light.t_max) ? LR_SHADOW_OPAQUE : 0u);
-    } else {
-        shadow_rays rays = shadow_rays_none();
-        set_ray(rays, wanted ? 0u : no_slot, vec4(light.wi, light.t_max), 1u);
-        rays.through = light.pdf == 0.0;
-        trace_shadows(rays, o, 1u);
-        depth = uvec3(rays.red.x, rays.green.x, rays.blue.x);
-    }
-    return depth;
-}
-
-// Sends the light of a source on its way to a point; what it brings, if that is known at once. Light
-// that paths cannot find by themselves comes straight through transparent objects, as in ray trees.
-vec3 arriving(vec3 origin, light_sample light, vec3 value, uint pixel, bool wanted)
-{
-    vec3 arrives = vec3(0.0);
-    if (has_trees) {
-        send_light(gpu_shadow_ray(origin, pixel, value, light.pdf == 0.0 ? LR_SHADOW_THROUGH : 0u),
-                   gpu_shadow_way(light.wi, light.t_max), wanted);
-    } else {
-        uvec3 depth = listed_depth(origin, light, wanted);
-        COUNT(counters.shadow, uint(wanted))
-        COUNT(counters.shadow_hits, uint(wanted && depth != uvec3(0u)))
-        arrives = wanted ? value * light_left(depth) : vec3(0.0);
-    }
-    return arrives;
-}
-
 void main()
 {
+    load_uniforms();
     uint index = queue_index();
     bool wanted = index < work.count;
     uint at = work.first + (wanted ? index : 0u);
@@ -94,101 +23,19 @@ void main()
         met = load_found(at - work.first);
     else
         met = nearest_listed(ray.origin, ray.direction);
-    bool hit = wanted && met.primitive != LR_PRIMITIVE_NONE;
-    bool beyond = wanted && !hit, last = (ray.state & LR_STATE_LAST) != 0u;
-
     film_sum sum = film_zero();
-    vec3 fog;
-    vec3 weight = weight_after(ray, met.t, fog);
-    if (has_fog && wanted)
-        film_accumulate(sum, fog);
-
-    uint depth = ray.state & LR_STATE_DEPTH, pair = pair_bounces + depth * pairs_a_bounce;
-    path_key key = path_key(path.pixel, path.order);
-    vec2 chances = sample_pair(key, pair + pair_roulette);
-    gpu_hit seen = gpu_hit(at, met.t, met.primitive, hit ? met.object : 0u);
-    shading here = shading_at(seen, ray, chances.y);
-    surface s = here.at;
-    gpu_material m = here.material;
-    boundary sides = boundary_at(ray, s, here.ids, m.ior, here.absent);
-    if (has_mixes)
-        sides = sides_of_part(sides, m);
-    bool solid_there = hit && !sides.hidden;
-
-    // The light that is there.
-    vec3 emission = emission_of(m, ray.direction, s.normal);
-    vec3 light_from = ray.origin - ray.direction * path.distance;
-    float pdf = emitter_pdf(s.object, light_from, ray.direction, path.distance + met.t, s.normal);
-    vec3 found = solid_there ? emission : vec3(0.0);
-    if (beyond) {
-        found = environment(ray.direction);
-        pdf = environment_pdf(ray.direction);
-    }
-    if (any(greaterThan(found, vec3(0.0))))
-        film_accumulate(sum, weight * found * power_heuristic(path.pdf, pdf));
-
-    // The light of one source.
-    vec2 choices = sample_pair(key, pair + pair_choices);
-    basis around = basis_around(here.lit_by);
-    vec3 wo = to_local(around, -ray.direction);
-    bsdf b = load_bsdf(here.ids.x, m, here.color, sides, wo, chances.y);
-    vec3 origin = s.lit_from + here.n * s.offset;
-    bool scatters = solid_there && !last;
-    bool deepest = depth >= frame.depth;
-    light_sample light = sample_light_at(origin, choices.x, sample_pair(key, pair + pair_light_point));
-    vec3 local_wi = to_local(around, light.wi);
-    bsdf_value towards = evaluate_bsdf(b, wo, local_wi);
-    bool in_front = ex_dot(light.wi, here.n) > 0.0;
-    if (has_rough_glass) {
-        // Light from behind comes through; interpolated normals must not take one side for the other.
-        bool behind = !in_front && local_wi.z < 0.0;
-        origin = mix(origin, s.position - here.n * s.offset, bvec3(behind));
-        in_front = behind || (in_front && local_wi.z > 0.0);
-    }
-    vec3 value = weight * towards.f * light.value * power_heuristic(light.pdf, towards.pdf);
-    bool reaches = scatters && in_front && any(greaterThanEqual(value, vec3(LR_FILM_STEP)));
-    value = arriving(origin, light, value, ray.pixel, reaches);
-    if (!has_trees)
-        film_accumulate(sum, value);
-
-    // The next ray.
-    bsdf_sample next = sample_bsdf(b, wo, choices.y, sample_pair(key, pair + pair_direction));
-    vec3 wi = to_world(around, next.wi);
-    bool through = (next.kind & LR_BSDF_TRANSMITS) != 0u;
-    vec3 side = through ? -here.n : here.n;
-    vec3 arrived = weight;
-    weight = arrived * next.weight;
-    float survives = depth < roulette_from ? 1.0 : min(brightest(weight) * roulette_margin, 1.0);
-    bool goes_on = scatters && next.kind != 0u && ex_dot(wi, side) > 0.0 &&
-                   !(brightest(weight) < LR_WEIGHT_MIN) && !(brightest(weight) < frame.min_weight) &&
-                   chances.x < survives;
-    weight = survives < 1.0 ? weight * ex_rcp(max(survives, 1.0e-20)) : weight;
-    uint kind = through ? LR_KIND_REFRACTED : LR_KIND_REFLECTED;
-    uint state = (depth + 1u) | kind << LR_STATE_KIND_SHIFT | (deepest ? LR_STATE_LAST : 0u);
-    uvec4 media = through ? sides.beyond : ray_media(ray);
-    float bounce_pdf = next.pdf, distance = 0.0;
-    if (hit && sides.hidden) {
-        // As if nothing were there: the ray goes on as the same ray.
-        uint passes = ray.state >> LR_STATE_PASSES_SHIFT;
-        goes_on = passes < uint(LR_PASSES_MAX);
-        state = ray.state + (1u << LR_STATE_PASSES_SHIFT);
-        weight = arrived;
-        media = sides.beyond;
-        side = -here.n;
-        wi = ray.direction;
-        bounce_pdf = path.pdf;
-        distance = path.distance + met.t;
-    }
-
+    ray_counts counts = ray_counts(0u, 0u, 0u, 0u);
+    bool goes_on = bounce(wanted, met, ray, path, sum, counts);
     film_add(ray.pixel, sum);
     // The stores come last: on a CPU an atomic waits for all stores before it.
     uint slot;
     TAKE_SLOT(counters.rays, goes_on, slot)
-    COUNT(counters.traced, uint(wanted))
-    COUNT(counters.hits, uint(hit))
+    COUNT(counters.traced, counts.traced)
+    COUNT(counters.hits, counts.hits)
+    COUNT(counters.shadow, counts.shadow)
+    COUNT(counters.shadow_hits, counts.shadow_hits)
     if (goes_on) {
-        store_ray(slot, gpu_ray(s.position + side * s.offset, ray.pixel, ex_normalize(wi), state, weight,
-                                0u, media.x, media.y, media.z, media.w));
-        store_path(slot, gpu_path(path.pixel, path.order, bounce_pdf, distance));
+        store_ray(slot, ray);
+        store_path(slot, path);
     }
 }

@@ -56,7 +56,7 @@ void store_ray(uint index, gpu_ray ray)
     uint note = 0u;
     if (explains)
         note = ray.note;
-    if (has_inspect)
+    if (has_inspect || has_paths)
         note = ray.note;
     rays_out[at + 2u] = pack_row(ray.weight, note);
     if (has_media)

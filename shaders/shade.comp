@@ -140,6 +140,7 @@ void send_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m
 
 void main()
 {
+    load_uniforms();
     uint index = queue_index();
     bool wanted = index < counters.hits;
     gpu_hit hit = load_hit(wanted ? index : 0u);

@@ -149,6 +149,7 @@ uint shadow_index(uint k)
 
 void main()
 {
+    load_uniforms();
     EACH_RAY
     {
         gpu_shadow_ray job = load_shadow_ray(shadow_index(k));

@@ -12,6 +12,7 @@ layout(local_size_x = LR_GROUP_SIZE) in;
 
 void main()
 {
+    load_uniforms();
     uint i = queue_index(), segment = work.light;
     if (i < work.count) {
         vec3 origin = load_shadow_ray(segment * work.shadow_room + i).origin;

@@ -13,6 +13,7 @@ shared uint totals[LR_GROUP_SIZE];
 
 void main()
 {
+    load_uniforms();
     const uint run = LR_CELLS / uint(LR_GROUP_SIZE);
     uint lane = gl_LocalInvocationIndex;
     uint first = gl_WorkGroupID.x * LR_CELLS + lane * run;

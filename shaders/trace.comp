@@ -19,6 +19,7 @@ layout(local_size_x = LR_GROUP_SIZE) in;
 
 void main()
 {
+    load_uniforms();
     uint index = queue_index();
     bool wanted = index < work.count;
     index = work.first + (wanted ? index : 0u);

@@ -244,6 +244,71 @@ static lr_status drain_queues(lr_wavefront *w, lr_pass_done done, void *user, do
     return LR_OK;
 }
 
+/* Traces the camera rays of `work`, and then the queues until all are empty. */
+static lr_status trace_in_queues(lr_wavefront *w, struct gpu_work *work, lr_pass_done done,
+                                 void *user, double fraction, lr_error *error)
+{
+    uint32_t groups[3] = {groups_for(work->tile_width, LR_TILE_GROUP),
+                          groups_for(work->tile_height, LR_TILE_GROUP), work->samples};
+    uint32_t rays = work->tile_width * work->tile_height * work->samples;
+    lr_status status = run_pass(w, 0, work, groups, rays, error);
+    if (!status && !done(user, fraction))
+        status = lr_fail(error, LR_ERROR_INTERRUPTED, "interrupted");
+    return status ? status : drain_queues(w, done, user, fraction, error);
+}
+
+/* Takes the paths of all pixels some bounces further, and says how many pixels have paths left. */
+static lr_status run_rounds(lr_wavefront *w, const struct gpu_work *work, uint32_t *left,
+                            lr_error *error)
+{
+    lr_status status = lr_commands_begin(w->device, error);
+    if (status)
+        return status;
+    wavefront_reset_counters(w);
+    lr_commands_barrier(w->device);
+    lr_commands_dispatch(w->device, &w->layout, w->path_loop, w->set, work,
+                         groups_for(work->tile_width, LR_TILE_GROUP),
+                         groups_for(work->tile_height, LR_TILE_GROUP), 1);
+    status = finish_pass(w, error);
+    if (status)
+        return status;
+    const struct gpu_counters *c = w->counters_host.mapped;
+    lr_render_stats *s = w->stats;
+    s->primary.traced += c->made;
+    s->primary.hit += c->made_hits;
+    s->bounced.traced += c->traced - c->made;
+    s->bounced.hit += c->hits - c->made_hits;
+    add_shadow_counts(s, c);
+    *left = c->rays;
+    if (c->traced == 0 || c->made > c->traced || c->hits > c->traced)
+        status = lr_fail(error, LR_ERROR_DEVICE,
+                         "the device did not go on with its work; its driver is faulty, try "
+                         "--device cpu");
+    return status;
+}
+
+/* Traces the paths of all pixels one after the other, in passes that stay short. */
+static lr_status trace_in_rounds(lr_wavefront *w, struct gpu_work *work, lr_pass_done done,
+                                 void *user, double fraction, lr_error *error)
+{
+    uint32_t pixels = work->tile_width * work->tile_height, left = pixels;
+    lr_status status = wavefront_open_rounds(w, error);
+    work->rounds = at_least(at_most(w->chunk_rays / pixels, w->rounds_most), 1);
+    uint64_t made = w->stats->primary.traced + (uint64_t)pixels * work->samples;
+    while (!status && left > 0) {
+        status = run_rounds(w, work, &left, error);
+        work->resumed = 1;
+        if (!status && !done(user, fraction))
+            status = lr_fail(error, LR_ERROR_INTERRUPTED, "interrupted");
+    }
+    if (!status && w->stats->primary.traced != made)
+        status = lr_fail(error, LR_ERROR_DEVICE,
+                         "the device made %lld paths too few or too many; its driver is faulty, "
+                         "try --device cpu",
+                         (long long)(made - w->stats->primary.traced));
+    return status;
+}
+
 lr_status lr_wavefront_trace(lr_wavefront *wavefront, const lr_camera_rays *rays, lr_pass_done done,
                              void *user, double fraction, lr_error *error)
 {
@@ -257,16 +322,14 @@ lr_status lr_wavefront_trace(lr_wavefront *wavefront, const lr_camera_rays *rays
         .step = rays->step,
         .film_first = rays->film_first,
         .film_pitch = rays->film_pitch,
+        .samples = rays->samples,
     };
-    uint32_t groups[3] = {groups_for(rays->columns, LR_TILE_GROUP),
-                          groups_for(rays->rows, LR_TILE_GROUP), rays->samples};
     double start = lr_now(), cpu_start = lr_cpu_now();
-    lr_status status =
-        run_pass(w, 0, &work, groups, rays->columns * rays->rows * rays->samples, error);
-    if (!status && !done(user, fraction))
-        status = lr_fail(error, LR_ERROR_INTERRUPTED, "interrupted");
-    if (!status)
-        status = drain_queues(w, done, user, fraction, error);
+    lr_status status;
+    if (w->loops)
+        status = trace_in_rounds(w, &work, done, user, fraction, error);
+    else
+        status = trace_in_queues(w, &work, done, user, fraction, error);
     w->stats->trace_seconds += lr_now() - start;
     w->stats->trace_cpu_seconds += lr_cpu_now() - cpu_start;
     return status;
@@ -326,7 +389,7 @@ lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_p
     lr_wavefront *w = wavefront;
     uint32_t pixels = tile->width * tile->height, samples = tile->samples;
     lr_status status = lr_wavefront_clear(w, pixels, error);
-    uint32_t at_once = at_least(w->chunk_rays / pixels, 1);
+    uint32_t at_once = w->loops ? samples : at_least(w->chunk_rays / pixels, 1);
     for (uint32_t sample = 0; sample < samples && !status; sample += at_once) {
         lr_camera_rays rays = {
             .x = tile->x,

@@ -23,10 +23,10 @@ typedef struct lr_wavefront {
     lr_layout layout;
     union {
         struct {
-            VkPipeline camera, trace, shade, path;
+            VkPipeline camera, trace, shade, path, path_loop;
             VkPipeline nearest, shadow, sort_scan, sort_place; /* in scenes with trees */
         };
-        VkPipeline programs[8]; /* all of them */
+        VkPipeline programs[9]; /* all of them */
     };
     VkDescriptorSet camera_set, set;
     union {
@@ -41,6 +41,8 @@ typedef struct lr_wavefront {
     bool shadows_sorted;                      /* those are to be sorted */
     uint32_t shadow_room;                     /* of a segment */
     uint32_t rays_at_once;                    /* that an invocation takes through the trees */
+    uint32_t rounds_most;                     /* bounces that an invocation may take in one pass */
+    bool loops; /* an invocation takes the paths of a pixel one after the other: path_loop.comp */
     lr_queue queues[LR_GENERATIONS_MAX];
     /* Where queues live. A buffer that a queue gives back is the first to be taken again: it is
      * still in the caches. */
@@ -89,8 +91,8 @@ lr_status lr_wavefront_update_camera(lr_wavefront *wavefront, lr_error *error);
 /* Makes the first `pixels` pixels of the film black. */
 lr_status lr_wavefront_clear(lr_wavefront *wavefront, uint32_t pixels, lr_error *error);
 
-/* Traces at most chunk_rays camera rays and all that comes of them; `fraction` is what `done` is
- * told. Shadow rays may be left waiting until the film is settled. */
+/* Traces at most chunk_rays camera rays, or so many pixels, and all that comes of them; `fraction`
+ * is what `done` is told. Shadow rays may be left waiting until the film is settled. */
 lr_status lr_wavefront_trace(lr_wavefront *wavefront, const lr_camera_rays *rays, lr_pass_done done,
                              void *user, double fraction, lr_error *error);
 lr_status lr_wavefront_settle(lr_wavefront *wavefront, lr_error *error);

@@ -44,6 +44,9 @@ static inline uint32_t lights_asked(const lr_wavefront *w)
 
 /* Opens the queues of a pass over a generation and points the sets at them. */
 lr_status wavefront_open_generation(lr_wavefront *w, uint32_t generation, lr_error *error);
+
+/* Opens one queue that a pass reads and writes, the place of the paths of each pixel. */
+lr_status wavefront_open_rounds(lr_wavefront *w, lr_error *error);
 void wavefront_close_if_empty(lr_wavefront *w, lr_queue *queue);
 
 void wavefront_reset_counters(lr_wavefront *w);

@@ -8,6 +8,7 @@
 #include "nearest_packet.spv.h"
 #include "nearest_ray.spv.h"
 #include "path.spv.h"
+#include "path_loop.spv.h"
 #include "shade.spv.h"
 #include "shadow_packet.spv.h"
 #include "shadow_ray.spv.h"
@@ -30,6 +31,10 @@
 #define COUNT_OF(array) (sizeof(array) / sizeof *(array))
 
 #define CELLS_SIZE (4ull * LR_CELLS * LR_SHADOW_LIGHTS)
+
+/* Whether paths stay in registers on software devices, where trees do not need queues: there a
+ * bounce through queues takes half as long again (docs/performance.md). */
+#define LOOPS_ON_SOFTWARE 1
 
 /* RAYS of the kernels named packet. */
 #define PACKET_RAYS 4
@@ -64,6 +69,8 @@ static void plan(lr_wavefront *w, const lr_render_options *options)
     /* Where a subgroup is one batch its rays go through a tree together. */
     bool packets = software && w->device->shuffle_size == LR_BATCH && !options->single_rays;
     w->rays_at_once = packets ? PACKET_RAYS : 1;
+    w->rounds_most = at_least(LOOPS_PER_INVOCATION / (2 * primitives), 1);
+    w->loops = LOOPS_ON_SOFTWARE && software && has_paths(w) && !has_trees(w);
 }
 
 /* Bytes of a queue that has room for the children of one chunk. */
@@ -110,10 +117,11 @@ static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *er
         VkPipeline *program;
         bool needed;
     } kernels[] = {
-        {camera_spv, sizeof camera_spv, &w->camera, true},
+        {camera_spv, sizeof camera_spv, &w->camera, !w->loops},
         {trace_spv, sizeof trace_spv, &w->trace, !paths},
         {shade_spv, sizeof shade_spv, &w->shade, !paths},
-        {path_spv, sizeof path_spv, &w->path, paths},
+        {path_spv, sizeof path_spv, &w->path, paths && !w->loops},
+        {path_loop_spv, sizeof path_loop_spv, &w->path_loop, w->loops},
         {sort_scan_spv, sizeof sort_scan_spv, &w->sort_scan, sorts},
         {sort_place_spv, sizeof sort_place_spv, &w->sort_place, sorts},
         {nearest_packet_spv, sizeof nearest_packet_spv, &w->nearest, trees && packets},
@@ -182,7 +190,7 @@ static lr_status create_layout(lr_wavefront *w, lr_error *error)
 }
 
 static_assert(offsetof(lr_wavefront, sort_place) + sizeof(VkPipeline) ==
-                  offsetof(lr_wavefront, programs) + sizeof(VkPipeline[8]),
+                  offsetof(lr_wavefront, programs) + sizeof(VkPipeline[9]),
               "programs[] holds all programs");
 static_assert(offsetof(lr_wavefront, order) + sizeof(lr_buffer) ==
                   offsetof(lr_wavefront, buffers) + sizeof(lr_buffer[12]),
@@ -271,6 +279,17 @@ lr_status wavefront_open_generation(lr_wavefront *w, uint32_t generation, lr_err
         list_buffers(w, &w->none, queue->rays, buffers);
         lr_set_write(w->device, &w->layout, buffers, w->camera_set);
     }
+    return LR_OK;
+}
+
+lr_status wavefront_open_rounds(lr_wavefront *w, lr_error *error)
+{
+    lr_status status = open_queue(w, &w->queues[0], error);
+    if (status)
+        return status;
+    const lr_buffer *buffers[LR_BIND_COUNT];
+    list_buffers(w, w->queues[0].rays, w->queues[0].rays, buffers);
+    lr_set_write(w->device, &w->layout, buffers, w->set);
     return LR_OK;
 }
 

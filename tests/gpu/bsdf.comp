@@ -24,6 +24,7 @@ bsdf_sample sample_at(gpu_material m, uint material, boundary sides, uint seed, 
 
 void main()
 {
+    load_uniforms();
     uint i = gl_GlobalInvocationID.x;
     uvec4 first = rays_in[0], second = rays_in[1], third = rays_in[2u + i];
     wo = uintBitsToFloat(first.xyz);

@@ -20,6 +20,7 @@ void put(float x)
 
 void main()
 {
+    load_uniforms();
     uint i = gl_GlobalInvocationID.x;
     vec4 a = uintBitsToFloat(rays_in[3u * i]);
     uvec4 b = rays_in[3u * i + 1u];

@@ -170,6 +170,7 @@ void put_instance(gpu_instance x)
 
 void main()
 {
+    load_uniforms();
     uint i = work.first;
     put_texture(load_texture(i)); // the first rows
     put_sphere(load_sphere(i));
@@ -214,7 +215,7 @@ void main()
     put(work.sorted);
     put(work.step);
     put(work.film_first);
-    put(work.film_pitch);
+    put(work.film_pitch); put(work.samples); put(work.rounds); put(work.resumed);
     put(counters.hit_groups); put(counters.hit_groups_y); put(counters.hit_groups_z);
     put(counters.hits); put(counters.rays); put(counters.traced); put(counters.shaded);
     put(counters.reflected); put(counters.refracted); put(counters.passed);
@@ -224,5 +225,5 @@ void main()
     put(counters.made); for (uint k = 0u; k < 4u; k++)
         put(counters.shadow_rays[k]);
     put(counters.found);
-    put(counters.unfinished); put(counters.unused0); put(counters.unused1);
+    put(counters.unfinished); put(counters.made_hits); put(counters.unused0);
 }

@@ -10,6 +10,7 @@ layout(local_size_x = LR_GROUP_SIZE) in;
 
 void main()
 {
+    load_uniforms();
     uint i = gl_GlobalInvocationID.x;
     uvec4 given = rays_in[i];
     vec2 uv = uintBitsToFloat(given.xy);
