@@ -62,6 +62,7 @@ layout(constant_id = LR_SPEC_HIGHLIGHT) const bool has_highlight = true;
 layout(constant_id = LR_SPEC_OREN_NAYAR) const bool has_oren_nayar = true;
 layout(constant_id = LR_SPEC_MODELS) const bool has_models = true;
 layout(constant_id = LR_SPEC_MIX) const bool has_mixes = true;
+layout(constant_id = LR_SPEC_SCATTERING) const bool has_scattering = true;
 
 layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame_block; };
 layout(set = 0, binding = LR_BIND_SCENE_TEXEL) uniform usamplerBuffer scene_texels;

@@ -104,7 +104,8 @@ typedef struct vec4 {
 #define LR_SPEC_OREN_NAYAR 55
 #define LR_SPEC_MODELS 56 /* ... or is not classic */
 #define LR_SPEC_MIX 57    /* ... or is a mix of others */
-#define LR_SPEC_COUNT 58
+#define LR_SPEC_SCATTERING 58 /* paths: some medium scatters light, or there is air */
+#define LR_SPEC_COUNT 59
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -291,10 +292,12 @@ LR_ROWS(gpu_object, 5)
 
 /* Indexed by rank; rank 0 is the empty space around everything. */
 struct gpu_medium {
-    vec3 absorption; /* per metre, times log2(e) */
+    vec3 absorption; /* per metre, times log2(e); of paths with `scattering` added */
     float ior;
+    vec3 scattering; /* the same */
+    float anisotropy;
 };
-LR_ROWS(gpu_medium, 1)
+LR_ROWS(gpu_medium, 2)
 
 #define LR_GPU_PATTERN_NONE 0u
 #define LR_GPU_PATTERN_CHECKER 1u

@@ -32,8 +32,9 @@
 
 #define CELLS_SIZE (4ull * LR_CELLS * LR_SHADOW_LIGHTS)
 
-/* Whether paths stay in registers on software devices, where trees do not need queues: there a
- * bounce through queues takes half as long again (docs/performance.md). */
+/* Whether paths stay in registers on software devices, where trees do not need queues: on lavapipe a
+ * bounce through queues takes twice as long (docs/performance.md). Not on SwiftShader, whose compiler
+ * takes gigabytes and minutes for that kernel. */
 #define LOOPS_ON_SOFTWARE 1
 
 /* RAYS of the kernels named packet. */
@@ -70,7 +71,8 @@ static void plan(lr_wavefront *w, const lr_render_options *options)
     bool packets = software && w->device->shuffle_size == LR_BATCH && !options->single_rays;
     w->rays_at_once = packets ? PACKET_RAYS : 1;
     w->rounds_most = at_least(LOOPS_PER_INVOCATION / (2 * primitives), 1);
-    w->loops = LOOPS_ON_SOFTWARE && software && has_paths(w) && !has_trees(w);
+    w->loops = LOOPS_ON_SOFTWARE && software && w->device->shuffle_size == LR_BATCH &&
+               has_paths(w) && !has_trees(w);
 }
 
 /* Bytes of a queue that has room for the children of one chunk. */

@@ -3,6 +3,8 @@
  * order is that of docs/info.md. */
 #include "scene/fingerprint.h"
 
+#include "scene/color.h"
+
 #include <sha2.h>
 #include <string.h>
 
@@ -98,6 +100,11 @@ static void put_surroundings(hasher *h, const lr_scene *scene)
     put_vector(h, scene->background_up);
     put_number(h, scene->fog_density);
     put_vector(h, scene->fog_density > 0 ? scene->fog_color : (lr_color){0, 0, 0});
+    if (!lr_color_is_black(scene->air.absorption) || !lr_color_is_black(scene->air.scattering)) {
+        put_vector(h, scene->air.absorption);
+        put_vector(h, scene->air.scattering);
+        put_number(h, scene->air.anisotropy);
+    }
 }
 
 static void put_camera(hasher *h, const lr_camera *camera)
@@ -170,6 +177,10 @@ static void put_material(hasher *h, const lr_material *m)
     put_vector(h, m->eta);
     put_vector(h, m->k);
     put_vector(h, m->sheen);
+    if (!lr_color_is_black(m->scattering)) {
+        put_vector(h, m->scattering);
+        put_number(h, m->anisotropy);
+    }
     if (m->model == LR_MODEL_MIX) {
         put_count(h, m->mix.first);
         put_count(h, m->mix.second);

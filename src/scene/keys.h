@@ -102,7 +102,7 @@ typedef struct lr_scene_draft {
     double version;
 } lr_scene_draft;
 
-extern const lr_record lr_scene_record, lr_camera_record, lr_image_record, lr_fog_record,
+extern const lr_record lr_scene_record, lr_camera_record, lr_image_record, lr_fog_record, lr_air_record,
     lr_material_record, lr_rotation_record, lr_group_record;
 extern const lr_record lr_background_records[], lr_pattern_records[], lr_light_records[], lr_object_records[];
 extern const uint32_t lr_background_record_count, lr_pattern_record_count, lr_light_record_count, lr_object_record_count;

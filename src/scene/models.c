@@ -38,6 +38,8 @@ static const struct {
     {"ior", CLASSIC | DIELECTRIC | PBR | THIN_GLASS},
     {"fresnel", CLASSIC},
     {"absorption", CLASSIC | DIELECTRIC | PBR},
+    {"scattering", CLASSIC | DIELECTRIC | PBR},
+    {"anisotropy", CLASSIC | DIELECTRIC | PBR},
     {"priority", CLASSIC | DIELECTRIC | PBR},
     {"roughness", DIFFUSE | DIELECTRIC | CONDUCTOR | PBR | THIN_GLASS},
     {"metal", CONDUCTOR},
@@ -211,6 +213,8 @@ static void take_inside(lr_material *m, const lr_material *from)
 {
     m->ior = from->ior;
     m->absorption = from->absorption;
+    m->scattering = from->scattering;
+    m->anisotropy = from->anisotropy;
     m->priority = from->priority;
     m->pane = from->pane;
 }

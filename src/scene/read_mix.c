@@ -31,6 +31,13 @@ static void check_part(lr_reader *reader, const lr_node *node, const char *which
                       which);
 }
 
+static bool same_medium(const lr_material *a, const lr_material *b)
+{
+    return a->ior == b->ior && a->priority == b->priority && a->anisotropy == b->anisotropy &&
+           lr_colors_equal(a->absorption, b->absorption) &&
+           lr_colors_equal(a->scattering, b->scattering);
+}
+
 /* Where both let light through, the inside must be the same. */
 static void check_inside(lr_reader *reader, const lr_mix *mix, const lr_material *first,
                          const lr_material *second)
@@ -41,11 +48,10 @@ static void check_inside(lr_reader *reader, const lr_mix *mix, const lr_material
         lr_report_add(reader->report, mix->second->offset,
                       "one material of the mix fills the inside, the other is thin_glass, expected "
                       "two of the same kind");
-    else if (!first->pane && (first->ior != second->ior || first->priority != second->priority ||
-                              !lr_colors_equal(first->absorption, second->absorption)))
+    else if (!first->pane && !same_medium(first, second))
         lr_report_add(reader->report, mix->second->offset,
-                      "both materials of the mix let light in, expected the same ior, absorption "
-                      "and priority: one medium fills the inside");
+                      "both materials of the mix let light in, expected the same ior, absorption, "
+                      "scattering, anisotropy and priority: one medium fills the inside");
 }
 
 /* The material of a part, LR_NONE after reporting. */

@@ -108,6 +108,8 @@ typedef struct lr_material {
     double ior; /* 0.01..100 */
     bool fresnel;
     lr_color absorption; /* per metre, Beer-Lambert: exp(-absorption * distance) */
+    lr_color scattering; /* per metre, only for paths */
+    double anisotropy;   /* -0.95..0.95: mean cosine of the angles that it scatters by */
     int priority;        /* -100..100: which of two overlapping media fills the overlap */
     double alpha_cutoff; /* where its texture's alpha is below, no surface; 0: everywhere */
     bool one_sided;      /* from behind, flats, triangles and open cones are not there */
@@ -262,6 +264,10 @@ struct lr_scene {
     lr_vec3 background_up; /* unit */
     lr_color fog_color;
     double fog_density; /* per metre; 0: no fog */
+    struct {            /* outside of all media, only for paths; all 0: nothing */
+        lr_color absorption, scattering; /* per metre */
+        double anisotropy;               /* as lr_material has it */
+    } air;
     struct {
         uint32_t width, height, samples; /* 1..32768, 1..32768, 0..65536; 0: as the
                                             integrator needs */

@@ -279,7 +279,7 @@ static void put_surroundings(lr_writer *writer)
 {
     const lr_scene *scene = writer->scene;
     FILE *out = writer->out;
-    mapping image = {.out = out}, fog = image;
+    mapping image = {.out = out}, fog = image, air = image;
     fputs("image: ", out);
     put_record(&image, &lr_image_record, scene, NULL);
     end_mapping(&image);
@@ -294,6 +294,12 @@ static void put_surroundings(lr_writer *writer)
         fputs("fog: ", out);
         put_record(&fog, &lr_fog_record, scene, NULL);
         end_mapping(&fog);
+        fputc('\n', out);
+    }
+    if (!lr_color_is_black(scene->air.absorption) || !lr_color_is_black(scene->air.scattering)) {
+        fputs("air: ", out);
+        put_record(&air, &lr_air_record, scene, NULL);
+        end_mapping(&air);
         fputc('\n', out);
     }
 }

@@ -101,7 +101,8 @@ void put_solid(gpu_solid x)
 
 void put_medium(gpu_medium x)
 {
-    put_vec3(x.absorption); put(floatBitsToUint(x.ior));
+    put_vec3(x.absorption); put(floatBitsToUint(x.ior)); put_vec3(x.scattering);
+    put(floatBitsToUint(x.anisotropy));
 }
 
 void put_material(gpu_material x)

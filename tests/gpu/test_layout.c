@@ -98,6 +98,8 @@ static const member members[] = {
     WORD(gpu_node, unused1),
     FLOATS(gpu_medium, absorption),
     FLOATS(gpu_medium, ior),
+    FLOATS(gpu_medium, scattering),
+    FLOATS(gpu_medium, anisotropy),
     FLOATS(gpu_material, color0),
     WORD(gpu_material, pattern),
     FLOATS(gpu_material, color1),
