@@ -55,8 +55,10 @@ static lr_status trace_samples(lr_wavefront *w, const lr_explanation *x, uint32_
                                .samples = samples - done};
         if (rays.samples > w->chunk_rays)
             rays.samples = w->chunk_rays;
+        double before = (double)done / samples;
         done += rays.samples;
-        status = lr_wavefront_trace(w, &rays, pass_done, e, (double)done / samples, error);
+        double fractions[2] = {before, (double)done / samples};
+        status = lr_wavefront_trace(w, &rays, pass_done, e, fractions, error);
     }
     if (!status)
         status = lr_wavefront_settle(w, error);

@@ -204,8 +204,9 @@ lr_status lr_progressive_step(lr_progressive *progressive, double seconds, lr_pa
     uint32_t most = rays_for(p, seconds);
     lr_camera_rays rays = next_rays(p, most);
     double start = lr_now();
+    double done = lr_progressive_done(p);
     lr_status status =
-        lr_wavefront_trace(&p->wavefront, &rays, go_on, user, lr_progressive_done(p), error);
+        lr_wavefront_trace(&p->wavefront, &rays, go_on, user, (const double[]){done, done}, error);
     if (!status)
         status = lr_wavefront_settle(&p->wavefront, error);
     if (status) {

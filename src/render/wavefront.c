@@ -289,28 +289,30 @@ static lr_status run_rounds(lr_wavefront *w, const struct gpu_work *work, uint32
 
 /* Traces the paths of all pixels one after the other, in passes that stay short. */
 static lr_status trace_in_rounds(lr_wavefront *w, struct gpu_work *work, lr_pass_done done,
-                                 void *user, double fraction, lr_error *error)
+                                 void *user, const double fractions[2], lr_error *error)
 {
     uint32_t pixels = work->tile_width * work->tile_height, left = pixels;
     lr_status status = wavefront_open_rounds(w, error);
     work->rounds = at_least(at_most(w->chunk_rays / pixels, w->rounds_most), 1);
-    uint64_t made = w->stats->primary.traced + (uint64_t)pixels * work->samples;
+    uint64_t before = w->stats->primary.traced, paths = (uint64_t)pixels * work->samples;
     while (!status && left > 0) {
         status = run_rounds(w, work, &left, error);
         work->resumed = 1;
-        if (!status && !done(user, fraction))
+        double share = (double)(w->stats->primary.traced - before) / (double)paths;
+        if (!status && !done(user, fractions[0] + (fractions[1] - fractions[0]) * share))
             status = lr_fail(error, LR_ERROR_INTERRUPTED, "interrupted");
     }
-    if (!status && w->stats->primary.traced != made)
+    if (!status && w->stats->primary.traced - before != paths)
         status = lr_fail(error, LR_ERROR_DEVICE,
-                         "the device made %lld paths too few or too many; its driver is faulty, "
-                         "try --device cpu",
-                         (long long)(made - w->stats->primary.traced));
+                         "the device made %llu of %llu paths; its driver is faulty, try "
+                         "--device cpu",
+                         (unsigned long long)(w->stats->primary.traced - before),
+                         (unsigned long long)paths);
     return status;
 }
 
 lr_status lr_wavefront_trace(lr_wavefront *wavefront, const lr_camera_rays *rays, lr_pass_done done,
-                             void *user, double fraction, lr_error *error)
+                             void *user, const double fractions[2], lr_error *error)
 {
     lr_wavefront *w = wavefront;
     struct gpu_work work = {
@@ -327,9 +329,9 @@ lr_status lr_wavefront_trace(lr_wavefront *wavefront, const lr_camera_rays *rays
     double start = lr_now(), cpu_start = lr_cpu_now();
     lr_status status;
     if (w->loops)
-        status = trace_in_rounds(w, &work, done, user, fraction, error);
+        status = trace_in_rounds(w, &work, done, user, fractions, error);
     else
-        status = trace_in_queues(w, &work, done, user, fraction, error);
+        status = trace_in_queues(w, &work, done, user, fractions[1], error);
     w->stats->trace_seconds += lr_now() - start;
     w->stats->trace_cpu_seconds += lr_cpu_now() - cpu_start;
     return status;
@@ -401,8 +403,8 @@ lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_p
             .first_sample = tile->first_sample + sample,
             .samples = at_most(at_once, samples - sample),
         };
-        double fraction = (double)(sample + rays.samples) / samples;
-        status = lr_wavefront_trace(w, &rays, done, user, fraction, error);
+        double fractions[2] = {(double)sample / samples, (double)(sample + rays.samples) / samples};
+        status = lr_wavefront_trace(w, &rays, done, user, fractions, error);
     }
     if (!status)
         status = lr_wavefront_settle(w, error);

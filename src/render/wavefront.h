@@ -91,10 +91,11 @@ lr_status lr_wavefront_update_camera(lr_wavefront *wavefront, lr_error *error);
 /* Makes the first `pixels` pixels of the film black. */
 lr_status lr_wavefront_clear(lr_wavefront *wavefront, uint32_t pixels, lr_error *error);
 
-/* Traces at most chunk_rays camera rays, or so many pixels, and all that comes of them; `fraction`
- * is what `done` is told. Shadow rays may be left waiting until the film is settled. */
+/* Traces at most chunk_rays camera rays, or so many pixels, and all that comes of them; what `done`
+ * is told lies between the two fractions. Shadow rays may be left waiting until the film is
+ * settled. */
 lr_status lr_wavefront_trace(lr_wavefront *wavefront, const lr_camera_rays *rays, lr_pass_done done,
-                             void *user, double fraction, lr_error *error);
+                             void *user, const double fractions[2], lr_error *error);
 lr_status lr_wavefront_settle(lr_wavefront *wavefront, lr_error *error);
 
 /* Forgets the rays that wait after an interruption; what they had brought stays in the film. */
