@@ -63,6 +63,10 @@ layout(constant_id = LR_SPEC_OREN_NAYAR) const bool has_oren_nayar = true;
 layout(constant_id = LR_SPEC_MODELS) const bool has_models = true;
 layout(constant_id = LR_SPEC_MIX) const bool has_mixes = true;
 layout(constant_id = LR_SPEC_SCATTERING) const bool has_scattering = true;
+layout(constant_id = LR_SPEC_FEW_PLANES) const uint few_planes = LR_FEW_PLANES;
+layout(constant_id = LR_SPEC_FEW_SPHERES) const uint few_spheres = LR_FEW_SPHERES;
+layout(constant_id = LR_SPEC_FEW_FLATS) const uint few_flats = LR_FEW_FLATS;
+layout(constant_id = LR_SPEC_FEW_SOLIDS) const uint few_solids = LR_FEW_SOLIDS;
 
 layout(std140, set = 0, binding = LR_BIND_FRAME) uniform FrameBlock { gpu_frame frame_block; };
 layout(set = 0, binding = LR_BIND_SCENE_TEXEL) uniform usamplerBuffer scene_texels;

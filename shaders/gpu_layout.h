@@ -82,7 +82,7 @@ typedef struct vec4 {
 #define LR_SPEC_INSPECT 33 /* the film gets frame.inspect instead of light */
 #define LR_SPEC_EXPLAIN 34 /* every ray and light is noted: gpu_notes */
 #define LR_SPEC_PATH 35    /* paths instead of ray trees: path.comp, path_loop.comp */
-#define LR_SPEC_FEW 36     /* ... whose rays are to test all primitives */
+#define LR_SPEC_FEW 36     /* ... whose rays are to test all primitives: */
 #define LR_SPEC_EMITTERS 37          /* paths have some light source to choose */
 #define LR_SPEC_DELTA_LIGHTS 38      /* ... from scene.lights; */
 #define LR_SPEC_SOFT_LIGHTS 39       /* some of these have an extent */
@@ -103,9 +103,18 @@ typedef struct vec4 {
 #define LR_SPEC_HIGHLIGHT 54 /* ... or has the classic highlight, */
 #define LR_SPEC_OREN_NAYAR 55
 #define LR_SPEC_MODELS 56 /* ... or is not classic */
-#define LR_SPEC_MIX 57    /* ... or is a mix of others */
-#define LR_SPEC_SCATTERING 58 /* paths: some medium scatters light, or there is air */
-#define LR_SPEC_COUNT 59
+#define LR_SPEC_FEW_PLANES 57 /* LR_SPEC_FEW: how many of each kind */
+#define LR_SPEC_FEW_SPHERES 58
+#define LR_SPEC_FEW_FLATS 59
+#define LR_SPEC_FEW_SOLIDS 60
+#define LR_SPEC_MIX 61        /* paths: some material is a mix of others */
+#define LR_SPEC_SCATTERING 62 /* paths: some medium scatters light, or there is air */
+#define LR_SPEC_COUNT 63
+
+#define LR_FEW_PLANES 4 /* and the most that there may be: held.glsl */
+#define LR_FEW_SPHERES 8
+#define LR_FEW_FLATS 16
+#define LR_FEW_SOLIDS 8
 
 #define LR_GROUP_SIZE 64 /* invocations a workgroup: 8 x 8 pixels, or 64 queue entries */
 #define LR_TILE_GROUP 8
@@ -649,6 +658,10 @@ struct gpu_work {
     uint samples;         /* of each pixel, where one invocation takes them all, */
     uint rounds;          /* and bounces that it takes in this pass; */
     uint resumed;         /* 1: the queue holds where the pass before left the paths */
+    uint plane_rows; /* of the first of each kind: LR_SPEC_FEW */
+    uint sphere_rows;
+    uint flat_rows;
+    uint solid_rows;
 };
 #define LR_SHADOW_THROUGH 4u /* light that no path finds otherwise comes through transparent objects */
 #define LR_SHADOW_LIGHTS 4 /* light l goes to segment l modulo this */

@@ -23,6 +23,7 @@ void begin_path(uvec2 pixel, uint number, uint in_film, inout gpu_ray ray, inout
 void main()
 {
     load_uniforms();
+    hold_records();
     uint y_group = spread_group(gl_WorkGroupID.y, gl_NumWorkGroups.y);
     uvec2 at = uvec2(gl_GlobalInvocationID.x, y_group * uint(LR_TILE_GROUP) + gl_LocalInvocationID.y);
     bool inside = at.x < work.tile_width && at.y < work.tile_height;

@@ -6,6 +6,7 @@
 #define SCENE_DATA_GLSL
 
 #include "bindings.glsl"
+#include "held.glsl"
 
 uvec4 scene_row(uint row)
 {
@@ -32,8 +33,18 @@ gpu_sphere sphere_of(uvec4 a, uvec4 b)
 
 gpu_sphere load_sphere(uint i)
 {
-    uint at = frame.spheres.base + 2u * i;
-    return sphere_of(scene_row(at), scene_row(at + 1u));
+    gpu_sphere record;
+    if (has_few) {
+        record = held_spheres[0];
+#define CHOOSE_SPHERE(k)                                                                            \
+    if (i == frame.spheres.begin + k)                                                                \
+        record = held_spheres[k];
+        EACH_HELD_SPHERE(CHOOSE_SPHERE)
+    } else {
+        uint at = frame.spheres.base + 2u * i;
+        record = sphere_of(scene_row(at), scene_row(at + 1u));
+    }
+    return record;
 }
 
 gpu_plane plane_of(uvec4 a, uvec4 b)
@@ -43,8 +54,18 @@ gpu_plane plane_of(uvec4 a, uvec4 b)
 
 gpu_plane load_plane(uint i)
 {
-    uint at = frame.planes.base + 2u * i;
-    return plane_of(scene_row(at), scene_row(at + 1u));
+    gpu_plane record;
+    if (has_few) {
+        record = held_planes[0];
+#define CHOOSE_PLANE(k)                                                                            \
+    if (i == frame.planes.begin + k)                                                                \
+        record = held_planes[k];
+        EACH_HELD_PLANE(CHOOSE_PLANE)
+    } else {
+        uint at = frame.planes.base + 2u * i;
+        record = plane_of(scene_row(at), scene_row(at + 1u));
+    }
+    return record;
 }
 
 gpu_flat flat_of(uvec4 a, uvec4 b, uvec4 c, uvec4 d)
@@ -56,8 +77,18 @@ gpu_flat flat_of(uvec4 a, uvec4 b, uvec4 c, uvec4 d)
 
 gpu_flat load_flat(uint i)
 {
-    uint at = frame.flats.base + 4u * i;
-    return flat_of(scene_row(at), scene_row(at + 1u), scene_row(at + 2u), scene_row(at + 3u));
+    gpu_flat record;
+    if (has_few) {
+        record = held_flats[0];
+#define CHOOSE_FLAT(k)                                                                            \
+    if (i == frame.flats.begin + k)                                                                \
+        record = held_flats[k];
+        EACH_HELD_FLAT(CHOOSE_FLAT)
+    } else {
+        uint at = frame.flats.base + 4u * i;
+        record = flat_of(scene_row(at), scene_row(at + 1u), scene_row(at + 2u), scene_row(at + 3u));
+    }
+    return record;
 }
 
 gpu_solid solid_of(uvec4 a, uvec4 b, uvec4 c, uvec4 d, uvec4 e)
@@ -69,11 +100,21 @@ gpu_solid solid_of(uvec4 a, uvec4 b, uvec4 c, uvec4 d, uvec4 e)
 
 gpu_solid load_solid(uint i)
 {
-    uint at = frame.solids.base + 5u * i;
-    uvec4 e = uvec4(0u);
-    if (has_cones)
-        e = scene_row(at + 4u);
-    return solid_of(scene_row(at), scene_row(at + 1u), scene_row(at + 2u), scene_row(at + 3u), e);
+    gpu_solid record;
+    if (has_few) {
+        record = held_solids[0];
+#define CHOOSE_SOLID(k)                                                                            \
+    if (i == frame.solids.begin + k)                                                                \
+        record = held_solids[k];
+        EACH_HELD_SOLID(CHOOSE_SOLID)
+    } else {
+        uint at = frame.solids.base + 5u * i;
+        uvec4 e = uvec4(0u);
+        if (has_cones)
+            e = scene_row(at + 4u);
+        record = solid_of(scene_row(at), scene_row(at + 1u), scene_row(at + 2u), scene_row(at + 3u), e);
+    }
+    return record;
 }
 
 // World to object space, in rows.

@@ -105,6 +105,7 @@ typedef struct lr_scene_info {
     const char *const *notes; /* what was left out of other programs' files, and why; the scene's */
     uint32_t note_count;
     bool moves; /* some value has keys: frames differ */
+    bool blurs; /* not only cameras move while the shutter of one of them is open */
 } lr_scene_info;
 
 void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info);

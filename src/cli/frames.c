@@ -1,6 +1,9 @@
 #include "cli/frames.h"
 
+#include "cli/output.h"
+
 #include <ctype.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -80,4 +83,30 @@ bool frames_path(const char *pattern, uint32_t frame, char *path, size_t size)
     }
     path[used] = '\0';
     return true;
+}
+
+int check_frames(const command *self, const char *text, const char *output, lr_format format)
+{
+    bool to_stdout = strcmp(output, "-") == 0;
+    bool floats = format == LR_FORMAT_PFM || format == LR_FORMAT_EXR;
+    frame_range range;
+    if (!frames_parse(text, &range)) {
+        print_error("--frames must be A-B, such as 0-47, from 0 to %d, not '%.100s'; see lavaray "
+                    "render --help",
+                    FRAME_MAX, text);
+        return EXIT_USAGE;
+    }
+    if (!to_stdout && !frames_named(output)) {
+        return wrong_usage(self, "with --frames the output needs one number: -o frame-%04d.png");
+    }
+    if (to_stdout && floats) {
+        return wrong_usage(self, "frames go to standard output as PPM or PNG");
+    }
+    char path[PATH_MAX];
+    if (!frames_path(output, range.last, path, sizeof path) ||
+        !frames_path(output, range.first, path, sizeof path)) {
+        print_error("%.100s: the path is too long", output);
+        return EXIT_FILE;
+    }
+    return check_writable(path);
 }

@@ -2,6 +2,8 @@
 #ifndef LR_CLI_FRAMES_H
 #define LR_CLI_FRAMES_H
 
+#include "cli/cli.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -21,5 +23,9 @@ bool frames_named(const char *pattern);
 
 /* The name of a frame's file; false when it does not fit. `pattern` is as frames_named wants it. */
 bool frames_path(const char *pattern, uint32_t frame, char *path, size_t size);
+
+/* Whether --frames TEXT means some, and the first and the last can be written to the output in that
+ * format; others can then, too. Prints what is wrong; returns an exit_code. */
+int check_frames(const command *self, const char *text, const char *output, lr_format format);
 
 #endif

@@ -81,6 +81,10 @@ static void print_text(const char *path, const lr_scene *scene, const lr_scene_i
         printf("  bounds     [%.6g, %.6g, %.6g] to [%.6g, %.6g, %.6g]\n", facts->min[0],
                facts->min[1], facts->min[2], facts->max[0], facts->max[1], facts->max[2]);
     }
+    if (info->moves) {
+        printf("  motion     from frame to frame%s\n",
+               info->blurs ? ", and while the shutter is open, not of cameras alone" : "");
+    }
     printf("  memory     %" PRIu64 " bytes\n", facts->bytes);
     printf("  file       SHA-256 %s\n", info->sha256);
     printf("  scene      SHA-256 %s\n", facts->sha256);
@@ -131,7 +135,7 @@ static int print_json(const char *path, const lr_scene *scene, const lr_scene_in
     json_t *json = json_pack(
         "{s:s, s:s, s:s, s:o, s:{s:i, s:i, s:i, s:i}, s:i, s:{s:i, s:I}, s:o, s:{s:i, s:I, s:I, "
         "s:I},"
-        " s:o, s:I, s:o}",
+        " s:o, s:b, s:b, s:I, s:o}",
         "scene", path, "file_sha256", info->sha256, "scene_sha256", facts->sha256, "cameras",
         cameras_json(scene, info->cameras), "lights", "point", (int)facts->point_lights,
         "directional", (int)facts->directional_lights, "spot", (int)facts->spot_lights, "added",
@@ -139,8 +143,9 @@ static int print_json(const char *path, const lr_scene *scene, const lr_scene_in
         (int)facts->textures, "texels", (json_int_t)facts->texels, "objects", objects_json(facts),
         "meshes", "count", (int)info->meshes, "triangles", (json_int_t)facts->triangles,
         "shown_triangles", (json_int_t)facts->shown_triangles, "vertices",
-        (json_int_t)facts->vertices, "bounds", bounds_json(facts), "memory_bytes",
-        (json_int_t)facts->bytes, "notes", notes_json(info));
+        (json_int_t)facts->vertices, "bounds", bounds_json(facts), "moves", (int)info->moves,
+        "blurs", (int)info->blurs, "memory_bytes", (json_int_t)facts->bytes, "notes",
+        notes_json(info));
     return write_json(json, "-");
 }
 

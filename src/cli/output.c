@@ -68,3 +68,27 @@ bool same_file(const char *a, const char *b)
     return stat(a, &sa) == 0 && stat(b, &sb) == 0 && S_ISREG(sa.st_mode) &&
            sa.st_dev == sb.st_dev && sa.st_ino == sb.st_ino;
 }
+
+int check_names(const command *self, const char *output, const char *stats, const char *checkpoint,
+                const char *scene)
+{
+    if (strcmp(output, "-") == 0 && stats && strcmp(stats, "-") == 0) {
+        return wrong_usage(self, "-o - and --stats - cannot both have standard output");
+    }
+    if (same_file(output, scene) || (stats && same_file(stats, scene)) ||
+        (checkpoint && same_file(checkpoint, scene))) {
+        return wrong_usage(self, "the output would replace the scene");
+    }
+    if (stats && strcmp(stats, output) == 0) {
+        return wrong_usage(self, "the picture and the statistics have the same name");
+    }
+    if (checkpoint &&
+        (strcmp(checkpoint, output) == 0 || (stats && strcmp(checkpoint, stats) == 0) ||
+         same_file(checkpoint, output))) {
+        return wrong_usage(self, "the checkpoint needs a name of its own");
+    }
+    if (checkpoint && strcmp(checkpoint, "-") == 0) {
+        return wrong_usage(self, "--checkpoint needs a file, not standard output");
+    }
+    return EXIT_FINE;
+}

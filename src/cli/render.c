@@ -167,47 +167,9 @@ static int check_aov(const command *self, const values *v, const lr_encoding *en
     return EXIT_FINE;
 }
 
-/* No file would replace another. */
-static int check_names(const command *self, const values *v, const char *scene)
+/* What goes with --frames. */
+static int check_several(const command *self, const values *v, const lr_encoding *encoding)
 {
-    const char *output = v->encoding.output;
-    if (strcmp(output, "-") == 0 && v->stats && strcmp(v->stats, "-") == 0) {
-        return wrong_usage(self, "-o - and --stats - cannot both have standard output");
-    }
-    if (same_file(output, scene) || (v->stats && same_file(v->stats, scene)) ||
-        (v->checkpoint && same_file(v->checkpoint, scene))) {
-        return wrong_usage(self, "the output would replace the scene");
-    }
-    if (v->stats && strcmp(v->stats, output) == 0) {
-        return wrong_usage(self, "the picture and the statistics have the same name");
-    }
-    if (v->checkpoint &&
-        (strcmp(v->checkpoint, output) == 0 || (v->stats && strcmp(v->checkpoint, v->stats) == 0) ||
-         same_file(v->checkpoint, output))) {
-        return wrong_usage(self, "the checkpoint needs a name of its own");
-    }
-    if (v->checkpoint && strcmp(v->checkpoint, "-") == 0) {
-        return wrong_usage(self, "--checkpoint needs a file, not standard output");
-    }
-    return EXIT_FINE;
-}
-
-/* What --frames means, and whether the first and the last can be written; others can then, too. */
-static int check_frames(const command *self, const values *v, const lr_encoding *encoding)
-{
-    const char *output = v->encoding.output;
-    bool to_stdout = strcmp(output, "-") == 0;
-    bool floats = encoding->format == LR_FORMAT_PFM || encoding->format == LR_FORMAT_EXR;
-    frame_range range;
-    if (!frames_parse(v->frames, &range)) {
-        print_error("--frames must be A-B, such as 0-47, from 0 to %d, not '%.100s'; see lavaray "
-                    "render --help",
-                    FRAME_MAX, v->frames);
-        return EXIT_USAGE;
-    }
-    if (!to_stdout && !frames_named(output)) {
-        return wrong_usage(self, "with --frames the output needs one number: -o frame-%04d.png");
-    }
     if (v->load.frame) {
         return wrong_usage(self, "--frame is for a single picture, --frames for several");
     }
@@ -217,16 +179,7 @@ static int check_frames(const command *self, const values *v, const lr_encoding 
     if (v->checkpoint) {
         return wrong_usage(self, "--checkpoint is for a single picture, not for --frames");
     }
-    if (to_stdout && floats) {
-        return wrong_usage(self, "frames go to standard output as PPM or PNG");
-    }
-    char path[PATH_MAX];
-    if (!frames_path(output, range.last, path, sizeof path) ||
-        !frames_path(output, range.first, path, sizeof path)) {
-        print_error("%.100s: the path is too long", output);
-        return EXIT_FILE;
-    }
-    return check_writable(path);
+    return check_frames(self, v->frames, v->encoding.output, encoding->format);
 }
 
 /* What the flags mean together, and whether the files can be written. */
@@ -244,10 +197,10 @@ static int check_values(const command *self, const values *v, const char *scene,
         code = check_part(self, v, encoding);
     }
     if (code == EXIT_FINE) {
-        code = check_names(self, v, scene);
+        code = check_names(self, v->encoding.output, v->stats, v->checkpoint, scene);
     }
     if (code == EXIT_FINE) {
-        code = v->frames ? check_frames(self, v, encoding) : check_writable(v->encoding.output);
+        code = v->frames ? check_several(self, v, encoding) : check_writable(v->encoding.output);
     }
     if (code == EXIT_FINE && v->stats) {
         code = check_writable(v->stats);

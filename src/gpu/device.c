@@ -404,6 +404,7 @@ void lr_device_end(lr_device *device)
     if (!device->handle || !vk->vkDestroyDevice)
         return;
     vk->vkDeviceWaitIdle(device->handle);
+    lr_device_drop_programs(device);
     vk->vkDestroyFence(device->handle, device->fence, NULL);
     vk->vkDestroyCommandPool(device->handle, device->command_pool, NULL);
     vk->vkDestroyDevice(device->handle, NULL);

@@ -15,6 +15,8 @@ typedef struct lr_window_system {
     void *window;
 } lr_window_system;
 
+struct lr_kept_program; /* program.c */
+
 struct lr_device {
     lr_vk vk;
     VkInstance instance;
@@ -34,7 +36,10 @@ struct lr_device {
     const lr_window_system *window; /* NULL: none */
     bool exact;                     /* passed the arithmetic self-test */
     double open_seconds;
-    uint32_t message_count; /* validation messages */
+    struct lr_kept_program *programs; /* kept for those who take the same again */
+    uint32_t program_count, program_capacity;
+    uint64_t programs_taken; /* so far */
+    uint32_t message_count;  /* validation messages */
     char first_message[1024];
 };
 
@@ -45,6 +50,9 @@ lr_status lr_device_open_window(const lr_device_desc *desc, const lr_window_syst
 /* The first half of lr_device_close, after which the device can only be asked for the validation
  * messages: those about what was not destroyed are then among them. */
 void lr_device_end(lr_device *device);
+
+/* program.c: destroys the programs that are kept. */
+void lr_device_drop_programs(lr_device *device);
 
 /* Seconds on a clock that only goes forward. */
 double lr_now(void);

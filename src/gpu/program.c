@@ -1,6 +1,13 @@
 #include "gpu/program.h"
 
+#include <assert.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
+
+/* Programs without a user that are kept: those of some pictures with all their layers. */
+#define IDLE_MAX 48
 
 lr_status lr_layout_create(lr_device *device, const lr_layout_desc *desc, lr_layout *layout,
                            lr_error *error)
@@ -131,4 +138,94 @@ fail:
         vk->vkDestroyShaderModule(device->handle, module, NULL);
     lr_spirv_free(&code);
     return status;
+}
+
+/* ---- Kept programs ------------------------------------------------------------------------ */
+
+typedef struct lr_kept_program {
+    const uint32_t *words;
+    uint32_t constants[LR_PROGRAM_CONSTANTS_MAX];
+    uint32_t constant_count;
+    VkPipeline program;
+    uint32_t users;
+    uint64_t taken; /* device->programs_taken when it was last */
+} lr_kept_program;
+
+static lr_kept_program *find_program(const lr_device *device, const lr_program_desc *desc)
+{
+    size_t size = desc->constant_count * sizeof *desc->constants;
+    for (uint32_t i = 0; i < device->program_count; i++) {
+        lr_kept_program *kept = &device->programs[i];
+        if (kept->words == desc->words && kept->constant_count == desc->constant_count &&
+            memcmp(kept->constants, desc->constants, size) == 0)
+            return kept;
+    }
+    return NULL;
+}
+
+static lr_status add_program(lr_device *device, const lr_layout *layout,
+                             const lr_program_desc *desc, lr_kept_program **added, lr_error *error)
+{
+    assert(desc->constant_count <= LR_PROGRAM_CONSTANTS_MAX);
+    if (!lr_array_reserve((void **)&device->programs, device->program_count,
+                          &device->program_capacity, sizeof *device->programs))
+        return lr_fail(error, LR_ERROR_MEMORY, "out of memory for programs");
+    lr_kept_program *kept = &device->programs[device->program_count];
+    *kept = (lr_kept_program){.words = desc->words, .constant_count = desc->constant_count};
+    memcpy(kept->constants, desc->constants, desc->constant_count * sizeof *desc->constants);
+    lr_status status = lr_program_create(device, layout, desc, &kept->program, error);
+    if (status)
+        return status;
+    device->program_count++;
+    *added = kept;
+    return LR_OK;
+}
+
+lr_status lr_program_take(lr_device *device, const lr_layout *layout, const lr_program_desc *desc,
+                          VkPipeline *program, lr_error *error)
+{
+    lr_kept_program *kept = find_program(device, desc);
+    lr_status status = kept ? LR_OK : add_program(device, layout, desc, &kept, error);
+    if (status)
+        return status;
+    kept->users++;
+    kept->taken = ++device->programs_taken;
+    *program = kept->program;
+    return LR_OK;
+}
+
+/* Destroys the program without users that was not taken for the longest time, if they are many. */
+static void drop_oldest(lr_device *device)
+{
+    uint32_t idle = 0;
+    lr_kept_program *oldest = NULL;
+    for (uint32_t i = 0; i < device->program_count; i++) {
+        lr_kept_program *kept = &device->programs[i];
+        if (kept->users)
+            continue;
+        idle++;
+        if (!oldest || kept->taken < oldest->taken)
+            oldest = kept;
+    }
+    if (idle <= IDLE_MAX)
+        return;
+    device->vk.vkDestroyPipeline(device->handle, oldest->program, NULL);
+    *oldest = device->programs[--device->program_count];
+}
+
+void lr_program_give_back(lr_device *device, VkPipeline program)
+{
+    for (uint32_t i = 0; i < device->program_count; i++)
+        if (device->programs[i].program == program)
+            device->programs[i].users--;
+    drop_oldest(device);
+}
+
+void lr_device_drop_programs(lr_device *device)
+{
+    for (uint32_t i = 0; i < device->program_count; i++)
+        device->vk.vkDestroyPipeline(device->handle, device->programs[i].program, NULL);
+    free(device->programs);
+    device->programs = NULL;
+    device->program_count = device->program_capacity = 0;
 }

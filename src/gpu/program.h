@@ -45,4 +45,13 @@ typedef struct lr_program_desc {
 lr_status lr_program_create(lr_device *device, const lr_layout *layout, const lr_program_desc *desc,
                             VkPipeline *program, lr_error *error);
 
+#define LR_PROGRAM_CONSTANTS_MAX 128
+
+/* The same from those that the device keeps: compiled only if no program of these words and
+ * constants was asked for before, or so many others since. Words stay as they are as long as the
+ * device, and always come with a layout of the same bindings. The caller gives it back. */
+lr_status lr_program_take(lr_device *device, const lr_layout *layout, const lr_program_desc *desc,
+                          VkPipeline *program, lr_error *error);
+void lr_program_give_back(lr_device *device, VkPipeline program);
+
 #endif

@@ -16,8 +16,10 @@ enum {
     OP_CAPABILITY = 17,
     OP_CONSTANT_TRUE = 41,
     OP_CONSTANT_FALSE = 42,
+    OP_CONSTANT = 43,
     OP_SPEC_CONSTANT_TRUE = 48,
     OP_SPEC_CONSTANT_FALSE = 49,
+    OP_SPEC_CONSTANT = 50,
     OP_SPEC_CONSTANT_OP = 52,
     OP_FUNCTION = 54,
     OP_FUNCTION_END = 56,
@@ -30,6 +32,7 @@ enum {
     OP_LOGICAL_OR = 166,
     OP_LOGICAL_AND = 167,
     OP_LOGICAL_NOT = 168,
+    OP_U_GREATER_THAN = 172,
     OP_CONTROL_BARRIER = 224,
     OP_MEMORY_BARRIER = 225,
     OP_ATOMIC_STORE = 228,
@@ -53,6 +56,7 @@ typedef struct folding {
     uint32_t bound;
     uint32_t *spec_ids;    /* by id: 1 + its SpecId, 0 for none */
     unsigned char *truths; /* by id: what is known of a bool */
+    uint64_t *values;      /* by id: 1 + the word that it is, 0 where that is not known */
     bool *reachable;       /* by label */
     uint32_t *ends;        /* by label: where its terminator stands */
     bool *live;            /* by function: some entry point calls it */
@@ -122,10 +126,28 @@ static truth fold_logic(uint32_t opcode, truth a, truth b)
     }
 }
 
+/* a > b, of two numbers without sign, by id. */
+static truth fold_greater(const folding *f, uint32_t a, uint32_t b)
+{
+    if (!f->values[a] || !f->values[b])
+        return UNKNOWN;
+    return f->values[a] > f->values[b] ? TRUE : FALSE;
+}
+
+/* 1 + the value of a constant of one word. */
+static uint64_t fold_constant(const folding *f, const uint32_t *w)
+{
+    uint32_t spec = f->spec_ids[w[2]];
+    bool given = spec && spec - 1 < f->constant_count;
+    return 1 + (uint64_t)(given ? f->constants[spec - 1] : w[3]);
+}
+
 static truth fold(const folding *f, const uint32_t *w, uint32_t label)
 {
     uint32_t length = spirv_length(w[0]), opcode = spirv_opcode(w[0]);
     switch (opcode) {
+    case OP_U_GREATER_THAN:
+        return fold_greater(f, w[3], w[4]);
     case OP_CONSTANT_TRUE:
         return TRUE;
     case OP_CONSTANT_FALSE:
@@ -139,6 +161,8 @@ static truth fold(const folding *f, const uint32_t *w, uint32_t label)
         return value ? TRUE : FALSE;
     }
     case OP_SPEC_CONSTANT_OP: /* the operation in word 3, then its operands */
+        if (w[3] == OP_U_GREATER_THAN)
+            return fold_greater(f, w[4], w[5]);
         return fold_logic(w[3], length > 4 ? f->truths[w[4]] : UNKNOWN,
                           length > 5 ? f->truths[w[5]] : UNKNOWN);
     case OP_PHI:
@@ -179,7 +203,13 @@ static void find_reachable(folding *f)
         case OP_SPEC_CONSTANT_TRUE:
         case OP_SPEC_CONSTANT_FALSE:
         case OP_SPEC_CONSTANT_OP:
+        case OP_U_GREATER_THAN:
             f->truths[w[2]] = fold(f, w, label);
+            break;
+        case OP_CONSTANT:
+        case OP_SPEC_CONSTANT:
+            if (spirv_length(w[0]) == 4)
+                f->values[w[2]] = fold_constant(f, w);
             break;
         case OP_LOOP_MERGE:
             f->reachable[w[1]] |= f->reachable[label];
@@ -243,6 +273,14 @@ static size_t emit(const folding *f, size_t word, uint32_t label, uint32_t *out)
         out[0] = (uint32_t)written << 16 | OP_PHI;
         return written;
     }
+    case OP_SPEC_CONSTANT:
+        if (!f->values[w[2]])
+            break;
+        out[0] = 4u << 16 | OP_CONSTANT;
+        out[1] = w[1];
+        out[2] = w[2];
+        out[3] = (uint32_t)(f->values[w[2]] - 1);
+        return 4;
     case OP_SPEC_CONSTANT_TRUE:
     case OP_SPEC_CONSTANT_FALSE:
     case OP_SPEC_CONSTANT_OP:
@@ -357,6 +395,7 @@ lr_status lr_spirv_specialize(const uint32_t *words, size_t count, const uint32_
         .bound = bound,
         .spec_ids = lr_alloc(bound, sizeof *f.spec_ids),
         .truths = lr_alloc(bound, sizeof *f.truths),
+        .values = lr_alloc(bound, sizeof *f.values),
         .reachable = lr_alloc(bound, sizeof *f.reachable),
         .ends = lr_alloc(bound, sizeof *f.ends),
         .live = lr_alloc(bound, sizeof *f.live),
@@ -365,7 +404,7 @@ lr_status lr_spirv_specialize(const uint32_t *words, size_t count, const uint32_
         .constant_count = constant_count,
     };
     out->words = lr_alloc(count, sizeof *out->words);
-    if (!f.spec_ids || !f.truths || !f.reachable || !f.ends || !f.live || !f.removed ||
+    if (!f.spec_ids || !f.truths || !f.values || !f.reachable || !f.ends || !f.live || !f.removed ||
         !out->words) {
         status = lr_fail(error, LR_ERROR_MEMORY, "out of memory for a SPIR-V module");
         goto done;
@@ -395,6 +434,7 @@ lr_status lr_spirv_specialize(const uint32_t *words, size_t count, const uint32_
 done:
     free(f.spec_ids);
     free(f.truths);
+    free(f.values);
     free(f.reachable);
     free(f.ends);
     free(f.live);

@@ -9,6 +9,7 @@
 #include "render/explain_internal.h"
 #include "render/film.h"
 #include "render/settings.h"
+#include "scene/moment.h"
 #include "render/wavefront.h"
 
 typedef struct explaining {
@@ -181,6 +182,10 @@ lr_status lr_explain(lr_device *device, const lr_scene *scene, const lr_render_o
         status = lr_fail(error, LR_ERROR_ARGUMENT,
                          "explain tells of ray trees, and this scene is path-traced; ask with "
                          "--integrator whitted");
+    if (!status && lr_scene_blurs(scene, settings.camera))
+        status = lr_fail(error, LR_ERROR_ARGUMENT,
+                         "explain tells of scenes that stand still, and in this one not only the "
+                         "camera moves while its shutter is open; give it `shutter: 0`");
     if (status)
         return status;
     return lr_explain_picture(device, scene, &settings, &own, x, y, sample, explanation, error);

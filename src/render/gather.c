@@ -17,8 +17,7 @@
 #define PASS_SAMPLES 16u
 
 typedef struct gather {
-    lr_wavefront *wavefront;
-    const lr_settings *settings;
+    lr_job *job;
     const lr_render_options *options;
     lr_sums *sums;
     lr_render_stats *stats;
@@ -26,7 +25,6 @@ typedef struct gather {
     double done, total;     /* samples of all pixels */
     double running;         /* of the rectangle that is being traced */
     double next_checkpoint; /* lr_now() */
-    double start;           /* ... when the time began that is limited */
 } gather;
 
 /* A piece of the film. */
@@ -39,7 +37,7 @@ static bool report_progress(void *user, double fraction)
     gather *g = user;
     double limit = g->options->seconds;
     if (limit > 0 && g->options->progress) {
-        double passed = (lr_now() - g->start) / limit;
+        double passed = (lr_now() - g->job->begun) / limit;
         return g->options->progress(g->options->user, passed < 1 ? passed : 1);
     }
     return !g->options->progress ||
@@ -136,8 +134,8 @@ static void add_film(const gather *g, const rectangle *r, const uint32_t *film)
 static lr_status trace(gather *g, const rectangle *r, uint32_t from, uint32_t to, lr_error *error)
 {
     lr_tile tile = {
-        .x = g->settings->crop_x + r->x,
-        .y = g->settings->crop_y + r->y,
+        .x = g->job->settings.crop_x + r->x,
+        .y = g->job->settings.crop_y + r->y,
         .width = r->width,
         .height = r->height,
         .first_sample = g->sums->first + from,
@@ -145,7 +143,8 @@ static lr_status trace(gather *g, const rectangle *r, uint32_t from, uint32_t to
     };
     const uint32_t *film;
     g->running = (double)r->width * r->height * tile.samples;
-    lr_status status = lr_wavefront_render(g->wavefront, &tile, report_progress, g, &film, error);
+    lr_status status =
+        lr_wavefront_render(g->job->wavefront, &tile, report_progress, g, &film, error);
     if (status)
         return status;
     add_film(g, r, film);
@@ -205,9 +204,9 @@ static lr_status reach(gather *g, rectangle r, uint32_t target, lr_error *error)
 }
 
 /* A pass over the picture, tile by tile. */
-static lr_status reach_all(gather *g, uint32_t target, lr_error *error)
+static lr_status pass_over(gather *g, uint32_t target, lr_error *error)
 {
-    uint32_t size = g->wavefront->tile_size, width = g->sums->width, height = g->sums->height;
+    uint32_t size = g->job->wavefront->tile_size, width = g->sums->width, height = g->sums->height;
     lr_status status = LR_OK;
     for (uint32_t y = 0; y < height && !status; y += size)
         for (uint32_t x = 0; x < width && !status; x += size) {
@@ -217,15 +216,36 @@ static lr_status reach_all(gather *g, uint32_t target, lr_error *error)
     return status;
 }
 
+/* Brings all pixels, which have `from` samples at least, to `target`: where the scene moves from
+ * one to the next, by a pass for each, of which those of a checkpoint are left out. */
+static lr_status reach_all(gather *g, uint32_t from, uint32_t target, lr_error *error)
+{
+    const rectangle all = {0, 0, g->sums->width, g->sums->height};
+    lr_status status = LR_OK;
+    if (!g->job->blurs)
+        return pass_over(g, target, error);
+    while (from < target && !status) {
+        uint32_t sample = g->sums->first + from++;
+        if (common_count(g, &all, from) == from)
+            continue;
+        status = lr_job_seek(g->job, sample, error);
+        if (!status)
+            status = pass_over(g, from, error);
+    }
+    return status;
+}
+
 /* Passes from `from` samples a pixel to `to` that bring each tile as many as are traced at once. */
 static lr_status reach_in_passes(gather *g, uint32_t from, uint32_t to, lr_error *error)
 {
-    uint32_t size = g->wavefront->tile_size, step = g->wavefront->chunk_rays / (size * size);
+    uint32_t size = g->job->wavefront->tile_size;
+    uint32_t step = g->job->wavefront->chunk_rays / (size * size);
     step = step > PASS_SAMPLES ? step : PASS_SAMPLES;
     lr_status status = LR_OK;
     while (from < to && !status) {
-        from = to - from > step ? from + step : to;
-        status = reach_all(g, from, error);
+        uint32_t next = to - from > step ? from + step : to;
+        status = reach_all(g, from, next, error);
+        from = next;
     }
     return status;
 }
@@ -239,8 +259,8 @@ static lr_status reach_in_time(gather *g, lr_error *error)
     lr_status status = LR_OK;
     while (next > 0 && !status) {
         double begun = lr_now();
-        status = reach_all(g, reached + next, error);
-        double now = lr_now(), left = g->start + g->options->seconds - now;
+        status = reach_all(g, reached, reached + next, error);
+        double now = lr_now(), left = g->job->begun + g->options->seconds - now;
         double fitting = left * next / (now - begun);
         reached += next;
         fitting = fitting < 2 ? fitting : fitting / 2;
@@ -283,7 +303,7 @@ static lr_status reach_quiet(gather *g, lr_error *error)
         uint32_t next = at_most(reached ? 2 * reached : LR_NOISE_FIRST / 2, most);
         status = reach_in_passes(g, reached, next, error);
         if (!status && next >= LR_NOISE_FIRST && next < most)
-            left = lr_noise_decide(&noise, g->sums, 1e-6 * g->settings->noise);
+            left = lr_noise_decide(&noise, g->sums, 1e-6 * g->job->settings.noise);
         if (!status && next < most)
             lr_noise_keep(&noise, g->sums);
         reached = next;
@@ -294,22 +314,19 @@ static lr_status reach_quiet(gather *g, lr_error *error)
     return status;
 }
 
-lr_status lr_gather(lr_wavefront *wavefront, const lr_settings *settings,
-                    const lr_render_options *options, lr_sums *sums, double start, lr_error *error)
+lr_status lr_gather(lr_job *job, lr_sums *sums, lr_error *error)
 {
     gather g = {
-        .wavefront = wavefront,
-        .settings = settings,
-        .options = options,
+        .job = job,
+        .options = job->options,
         .sums = sums,
-        .stats = wavefront->stats,
-        .start = start,
+        .stats = job->wavefront->stats,
         .total = (double)sums->width * sums->height * sums->count,
     };
-    if (options->seconds > 0)
+    if (g.options->seconds > 0)
         return reach_in_time(&g, error);
-    if (settings->noise)
+    if (job->settings.noise)
         return reach_quiet(&g, error);
-    return options->checkpoint ? reach_with_checkpoints(&g, error)
-                               : reach_all(&g, sums->count, error);
+    return g.options->checkpoint ? reach_with_checkpoints(&g, error)
+                                 : reach_all(&g, 0, sums->count, error);
 }

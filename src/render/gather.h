@@ -3,16 +3,14 @@
 #ifndef LR_RENDER_GATHER_H
 #define LR_RENDER_GATHER_H
 
-#include "render/sums.h"
-#include "render/wavefront.h"
+#include "render/job.h"
 
 /* Whether a render goes over the picture more than once, and so has to gather. */
 bool lr_needs_sums(const lr_render_options *options);
 
 /* Brings all pixels of the sums to the samples that they are to have. With a checkpoint, first
- * takes over what it holds; a failure on the way leaves one behind. With a time limit, which began
- * at `start` (lr_now), sums->count becomes the number of samples reached. */
-lr_status lr_gather(lr_wavefront *wavefront, const lr_settings *settings,
-                    const lr_render_options *options, lr_sums *sums, double start, lr_error *error);
+ * takes over what it holds; a failure on the way leaves one behind. With a time limit, sums->count
+ * becomes the number of samples reached. The progress is told to job->options. */
+lr_status lr_gather(lr_job *job, lr_sums *sums, lr_error *error);
 
 #endif

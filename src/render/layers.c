@@ -97,8 +97,8 @@ static void take_film(void *user, const lr_tile *tile, const uint32_t *film)
 }
 
 /* One render of the whole picture, whose film goes to `take`. */
-static lr_status run(rendering *r, const lr_job *job, double share, uint32_t ranges,
-                     take_pixel take, lr_error *error)
+static lr_status run(rendering *r, lr_job *job, double share, uint32_t ranges, take_pixel take,
+                     lr_error *error)
 {
     r->take = take;
     r->running = share;
@@ -108,18 +108,10 @@ static lr_status run(rendering *r, const lr_job *job, double share, uint32_t ran
 }
 
 /* The same after the settings of the job have changed. */
-static lr_status run_changed(rendering *r, lr_job *job, const lr_scene *scene, double share,
-                             take_pixel take, lr_error *error)
+static lr_status run_changed(rendering *r, lr_job *job, double share, take_pixel take,
+                             lr_error *error)
 {
-    lr_pack_camera(scene, &job->settings, &job->packed);
-    if (job->settings.inspect == LR_INSPECT_NUMBER) {
-        /* The middle of the lens, when the shutter opens. */
-        struct gpu_lens *lens = &job->packed.frame.lens;
-        const vec3 none = {0, 0, 0};
-        lens->right = lens->up = none;
-        lens->origin_step = lens->forward_step = lens->right_step = lens->down_step = none;
-    }
-    lr_status status = lr_wavefront_update_camera(job->wavefront, error);
+    lr_status status = lr_job_change(job, error);
     return status ? status : run(r, job, share, 1, take, error);
 }
 
@@ -160,25 +152,23 @@ static lr_status trace_picture(rendering *r, lr_job *job, lr_error *error)
     const lr_settings *settings = &r->settings;
     if (lr_needs_sums(&r->options)) {
         r->running = 1;
-        lr_status status =
-            lr_gather(job->wavefront, settings, &r->options, &r->sums, job->begun, error);
+        lr_status status = lr_gather(job, &r->sums, error);
         r->done += 1;
         return status;
     }
     uint32_t ranges = 1;
     if (wants(r, LR_AOV_VARIANCE)) {
-        size_t pixels = (size_t)job->wavefront->tile_size * job->wavefront->tile_size;
-        r->spread = lr_alloc(pixels, sizeof *r->spread);
+        r->spread = lr_alloc(lr_job_most_pixels(job), sizeof *r->spread);
         if (!r->spread)
-            return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the variance of a tile");
+            return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the variance of pixels");
         ranges = settings->sample_count < RANGES ? settings->sample_count : RANGES;
     }
     return run(r, job, 1, ranges, take_picture, error);
 }
 
 /* The picture, and its direct part by the same kernels. */
-static lr_status trace_light(rendering *r, lr_job *job, const lr_scene *scene, lr_picture *picture,
-                             lr_render_stats *stats, lr_error *error)
+static lr_status trace_light(rendering *r, lr_job *job, lr_picture *picture, lr_render_stats *stats,
+                             lr_error *error)
 {
     lr_status status = trace_picture(r, job, error);
     if (status)
@@ -200,7 +190,7 @@ static lr_status trace_light(rendering *r, lr_job *job, const lr_scene *scene, l
     lr_render_stats again = {0};
     job->wavefront->stats = &again;
     job->settings.depth = 0;
-    return run_changed(r, job, scene, DIRECT_SHARE, take_direct, error);
+    return run_changed(r, job, DIRECT_SHARE, take_direct, error);
 }
 
 /* ---- What is seen ------------------------------------------------------------------------- */
@@ -293,7 +283,6 @@ static lr_status inspect(rendering *r, lr_device *device, const lr_scene *scene,
     lr_job job = {.options = &r->options, .settings = r->settings};
     job.settings.inspect = inspections[0].inspect;
     lr_status status = lr_job_open(&job, device, scene, &own, error);
-    job.packed.light_count = 0; /* nobody asks them */
     for (size_t i = 0; i < INSPECTION_COUNT && !status; i++) {
         if (!(inspections[i].aovs & r->wanted))
             continue;
@@ -304,7 +293,7 @@ static lr_status inspect(rendering *r, lr_device *device, const lr_scene *scene,
             job.settings.integrator = LR_INTEGRATOR_WHITTED;
             job.settings.samples = job.settings.sample_count = 1;
         }
-        status = run_changed(r, &job, scene, INSPECTED_SHARE, inspections[i].take, error);
+        status = run_changed(r, &job, INSPECTED_SHARE, inspections[i].take, error);
     }
     stats->saturated += own.saturated;
     stats->non_finite += own.non_finite;
@@ -399,7 +388,7 @@ lr_status lr_render_layers(lr_device *device, const lr_scene *scene,
     if (!status)
         status = lr_job_picture(&job, picture, error);
     if (!status)
-        status = trace_light(&r, &job, scene, picture, stats, error);
+        status = trace_light(&r, &job, picture, stats, error);
     lr_job_finish(&job);
     if (!status)
         status = inspect(&r, device, scene, stats, error);

@@ -158,12 +158,14 @@ void lr_pack_light(const lr_light *light, struct gpu_light *out)
     }
 }
 
-static lr_status pack_lights(const lr_scene *scene, lr_packed_scene *packed, lr_error *error)
+/* inspected: what pixels show asks no light. */
+static lr_status pack_lights(const lr_scene *scene, bool inspected, lr_packed_scene *packed,
+                             lr_error *error)
 {
     /* A scene that names no lights has one that follows the camera: lr_pack_camera writes it. */
     uint32_t count = scene->default_light ? 1 : scene->light_count;
     packed->frame.lights = packed->row_count;
-    packed->light_count = count;
+    packed->light_count = inspected ? 0 : count;
     for (uint32_t i = 0; i < count; i++) {
         struct gpu_light record = {.flags = 0};
         if (!scene->default_light)
@@ -195,6 +197,7 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
     lr_trees own_trees = {0};
     *packed = (lr_packed_scene){.leaf_size = settings->leaf_size,
                                 .threads = settings->threads,
+                                .moment = scene->moment,
                                 .trees = settings->trees ? settings->trees : &own_trees};
     packed->trees->keep = packed->trees == settings->trees;
     packed->frame = (struct gpu_frame){
@@ -216,7 +219,7 @@ lr_status lr_pack_scene(const lr_scene *scene, const lr_settings *settings, lr_p
     if (!status && settings->integrator == LR_INTEGRATOR_PATH)
         status = lr_pack_bsdfs(scene, packed, error);
     if (!status)
-        status = pack_lights(scene, packed, error);
+        status = pack_lights(scene, settings->inspect >= LR_INSPECT_ALBEDO, packed, error);
     if (!status)
         status = lr_pack_environment(scene, packed, error);
     if (!status)

@@ -53,6 +53,7 @@ typedef struct lr_packed_scene {
     uint32_t tests_per_ray;      /* about so many primitives does a ray meet on its way */
     uint32_t leaf_size, threads; /* of lr_settings */
     lr_trees *trees;             /* while it is being packed */
+    bool moment;                 /* a sample is all that is taken of it */
     lr_places places;
     lr_texture sky; /* of a background that is the sky, while it is being packed */
     double environment_light, sun_light; /* their radiance times their solid angle */

@@ -95,6 +95,13 @@ void lr_pack_camera(const lr_scene *scene, const lr_settings *settings, lr_packe
     pack_lens(camera, settings, &frame->lens);
     pack_motion(camera, settings, frame);
     frame->lens.kind |= lr_pack_filter(scene, settings);
+    if (settings->inspect == LR_INSPECT_NUMBER) {
+        /* The middle of the lens, when the shutter opens: numbers have no mean. */
+        struct gpu_lens *lens = &frame->lens;
+        const vec3 none = {0, 0, 0};
+        lens->right = lens->up = none;
+        lens->origin_step = lens->forward_step = lens->right_step = lens->down_step = none;
+    }
     frame->half_width = (float)(settings->width * 0.5);
     frame->half_height = (float)(settings->height * 0.5);
     frame->samples = settings->samples;

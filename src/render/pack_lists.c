@@ -248,9 +248,19 @@ static lr_status pack_sorted(const lr_primitive *primitives, const uint32_t *sor
             fits = lists[kind]->nodes != UINT32_MAX;
         }
     if (fits && !packed->constants[LR_SPEC_TREES]) {
-        packed->constants[LR_SPEC_FEW] = packed->constants[LR_SPEC_PATH] &&
-                                         !packed->constants[LR_SPEC_TRANSPARENT] &&
-                                         are_few(primitives, sorted, frame->bounded);
+        uint32_t *use = packed->constants;
+        use[LR_SPEC_FEW_PLANES] = frame->planes.end - frame->planes.begin;
+        use[LR_SPEC_FEW_SPHERES] = frame->spheres.end - frame->spheres.begin;
+        use[LR_SPEC_FEW_FLATS] = frame->flats.end - frame->flats.begin;
+        use[LR_SPEC_FEW_SOLIDS] = frame->solids.end - frame->solids.begin;
+        use[LR_SPEC_FEW] =
+            use[LR_SPEC_PATH] && !use[LR_SPEC_TRANSPARENT] &&
+            use[LR_SPEC_FEW_PLANES] <= LR_FEW_PLANES &&
+            use[LR_SPEC_FEW_SPHERES] <= LR_FEW_SPHERES && use[LR_SPEC_FEW_FLATS] <= LR_FEW_FLATS &&
+            use[LR_SPEC_FEW_SOLIDS] <= LR_FEW_SOLIDS && are_few(primitives, sorted, frame->bounded);
+        if (!use[LR_SPEC_FEW])
+            use[LR_SPEC_FEW_PLANES] = use[LR_SPEC_FEW_SPHERES] = use[LR_SPEC_FEW_FLATS] =
+                use[LR_SPEC_FEW_SOLIDS] = 0;
         fits = pack_balls(primitives, sorted, packed);
     }
     if (!fits)

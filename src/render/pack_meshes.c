@@ -413,7 +413,9 @@ lr_status lr_pack_meshes(const lr_scene *scene, const uint32_t *flags, uint32_t 
         status = lr_pack_no_memory(error);
     for (uint32_t i = 0; i < scene->object_count && !status; i++)
         if (scene->objects[i].kind == LR_MESH) {
-            m.users[scene->objects[i].mesh]++;
+            /* In motion a mesh keeps to its own space, where its tree stays the same. */
+            bool moves = scene->moment && scene->objects[i].moves;
+            m.users[scene->objects[i].mesh] += moves ? 2 : 1;
             m.shown_by[scene->objects[i].mesh] = i;
         }
     if (!status)

@@ -53,7 +53,8 @@ lr_status lr_progressive_replace(lr_progressive *progressive, const lr_scene *sc
                                  lr_packed_scene *packed, bool *taken, lr_error *error)
 {
     lr_progressive *p = progressive;
-    *taken = lr_wavefront_suits(&p->wavefront, packed);
+    static const lr_render_options defaults;
+    *taken = lr_wavefront_suits(&p->wavefront, packed, &defaults);
     if (!*taken)
         return LR_OK;
     lr_wavefront_discard(&p->wavefront);

@@ -291,6 +291,11 @@ static lr_status run_rounds(lr_wavefront *w, const struct gpu_work *work, uint32
 static lr_status trace_in_rounds(lr_wavefront *w, struct gpu_work *work, lr_pass_done done,
                                  void *user, const double fractions[2], lr_error *error)
 {
+    const struct gpu_frame *frame = &w->scene->frame;
+    work->plane_rows = frame->planes.base + 2 * frame->planes.begin;
+    work->sphere_rows = frame->spheres.base + 2 * frame->spheres.begin;
+    work->flat_rows = frame->flats.base + 4 * frame->flats.begin;
+    work->solid_rows = frame->solids.base + 5 * frame->solids.begin;
     uint32_t pixels = work->tile_width * work->tile_height, left = pixels;
     lr_status status = wavefront_open_rounds(w, error);
     work->rounds = at_least(at_most(w->chunk_rays / pixels, w->rounds_most), 1);

@@ -75,8 +75,10 @@ typedef struct lr_camera_rays {
     uint32_t first_sample, samples;
 } lr_camera_rays;
 
-/* Whether the kernels and buffers made for one scene do for another as well. */
-bool lr_wavefront_suits(const lr_wavefront *wavefront, const lr_packed_scene *scene);
+/* Whether the kernels and buffers made for one scene by these options do for another as well, whose
+ * work is cut up then as that of the first. */
+bool lr_wavefront_suits(const lr_wavefront *wavefront, const lr_packed_scene *scene,
+                        const lr_render_options *options);
 
 /* Takes another scene that it suits. */
 lr_status lr_wavefront_replace_scene(lr_wavefront *wavefront, const lr_packed_scene *scene,

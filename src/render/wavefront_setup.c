@@ -32,9 +32,9 @@
 
 #define CELLS_SIZE (4ull * LR_CELLS * LR_SHADOW_LIGHTS)
 
-/* Whether paths stay in registers on software devices, where trees do not need queues: on lavapipe a
- * bounce through queues takes twice as long (docs/performance.md). Not on SwiftShader, whose compiler
- * takes gigabytes and minutes for that kernel. */
+/* Whether paths stay in registers on software devices, where trees do not need queues: on lavapipe
+ * a bounce through queues takes twice as long (docs/performance.md). Not on SwiftShader, whose
+ * compiler takes gigabytes and minutes for that kernel. */
 #define LOOPS_ON_SOFTWARE 1
 
 /* RAYS of the kernels named packet. */
@@ -51,11 +51,10 @@ static void plan(lr_wavefront *w, const lr_render_options *options)
     if (has_trees(w))
         chunk /= lights_a_segment;
     chunk = at_least(chunk, CHUNK_MIN);
-    uint32_t pixels = chunk;
+    uint32_t pixels = chunk, samples = w->scene->moment ? 1 : at_least(w->scene->frame.samples, 1);
     /* A tile whose samples all fit in half a chunk keeps the film in the cache as well. */
     if (software)
-        pixels =
-            at_most(chunk, at_least(chunk / 2 / at_least(w->scene->frame.samples, 1), 64 * 64));
+        pixels = at_most(chunk, at_least(chunk / 2 / samples, 64 * 64));
     w->tile_size = 256;
     while (w->tile_size > 8 && w->tile_size * w->tile_size > pixels)
         w->tile_size /= 2;
@@ -100,12 +99,19 @@ static VkDeviceSize order_size(const lr_wavefront *w)
     return explains(w) ? sizeof(struct gpu_notes) : shadow_size(w) / 8;
 }
 
+/* A scene may be too large for a storage buffer, and is then read as a texel buffer only. */
+static bool storage_fits(const lr_wavefront *w)
+{
+    return w->rows.size <= w->device->limits.maxStorageBufferRange;
+}
+
 static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *error)
 {
     uint32_t constants[LR_SPEC_COUNT];
     memcpy(constants, w->scene->constants, sizeof constants);
     uint32_t limit = w->device->limits.maxTexelBufferElements;
     constants[LR_SPEC_TEXEL_LOADS] = texel_loads;
+    constants[LR_SPEC_FEW] &= w->loops && storage_fits(w);
     constants[LR_SPEC_TEXEL_QUEUES] =
         texel_loads && queue_size(w) / 16 <= limit && shadow_size(w) / 16 <= limit;
     constants[LR_SPEC_SHUFFLE] = w->device->shuffle_size >= LR_BATCH;
@@ -135,7 +141,7 @@ static lr_status create_programs(lr_wavefront *w, bool texel_loads, lr_error *er
     for (size_t i = 0; i < COUNT_OF(kernels) && !status; i++) {
         lr_program_desc desc = {kernels[i].words, kernels[i].size / 4, constants, LR_SPEC_COUNT};
         if (kernels[i].needed)
-            status = lr_program_create(w->device, &w->layout, &desc, kernels[i].program, error);
+            status = lr_program_take(w->device, &w->layout, &desc, kernels[i].program, error);
     }
     return status;
 }
@@ -194,6 +200,7 @@ static lr_status create_layout(lr_wavefront *w, lr_error *error)
 static_assert(offsetof(lr_wavefront, sort_place) + sizeof(VkPipeline) ==
                   offsetof(lr_wavefront, programs) + sizeof(VkPipeline[9]),
               "programs[] holds all programs");
+static_assert(LR_SPEC_COUNT <= LR_PROGRAM_CONSTANTS_MAX, "programs are told by all constants");
 static_assert(offsetof(lr_wavefront, order) + sizeof(lr_buffer) ==
                   offsetof(lr_wavefront, buffers) + sizeof(lr_buffer[12]),
               "buffers[] holds all buffers");
@@ -222,12 +229,6 @@ void wavefront_close_if_empty(lr_wavefront *w, lr_queue *queue)
         return;
     w->unused[w->unused_count++] = queue->rays;
     queue->rays = NULL;
-}
-
-/* A scene may be too large for a storage buffer, and is then read as a texel buffer only. */
-static bool storage_fits(const lr_wavefront *w)
-{
-    return w->rows.size <= w->device->limits.maxStorageBufferRange;
 }
 
 /* The buffers of the kernels that read the rays of one queue and write those of another. */
@@ -301,7 +302,8 @@ void wavefront_reset_counters(lr_wavefront *w)
     lr_commands_write(w->device, &w->counters, 0, &zero, sizeof zero);
 }
 
-/* Drivers compile a kernel when it first runs, so each runs once here on nothing. */
+/* Drivers compile a kernel when it first runs, so each runs once here on nothing; those that the
+ * device has kept are ready. */
 static lr_status warm_up(lr_wavefront *w, lr_error *error)
 {
     lr_status status = lr_commands_begin(w->device, error);
@@ -323,15 +325,23 @@ static bool is_texel_buffer(const lr_wavefront *w, const lr_packed_scene *scene)
     return scene->row_count <= w->device->limits.maxTexelBufferElements;
 }
 
-bool lr_wavefront_suits(const lr_wavefront *w, const lr_packed_scene *scene)
+/* Passes may become twice as long, or half. */
+static bool is_near(uint32_t a, uint32_t b)
 {
-    static const lr_render_options defaults;
+    return a <= 2 * b && b <= 2 * a;
+}
+
+bool lr_wavefront_suits(const lr_wavefront *w, const lr_packed_scene *scene,
+                        const lr_render_options *options)
+{
     lr_wavefront other = {.device = w->device, .scene = scene};
-    plan(&other, &defaults);
+    plan(&other, options);
     return !memcmp(w->scene->constants, scene->constants, sizeof scene->constants) &&
            is_texel_buffer(w, w->scene) && is_texel_buffer(w, scene) &&
-           other.chunk_rays == w->chunk_rays && other.lights_at_once == w->lights_at_once &&
-           other.shadow_room == w->shadow_room && other.rays_at_once == w->rays_at_once;
+           lights_asked(&other) == lights_asked(w) && is_near(other.chunk_rays, w->chunk_rays) &&
+           is_near(other.lights_at_once, w->lights_at_once) &&
+           is_near(other.rounds_most, w->rounds_most) && other.loops == w->loops &&
+           other.rays_at_once == w->rays_at_once;
 }
 
 lr_status lr_wavefront_replace_scene(lr_wavefront *w, const lr_packed_scene *scene, lr_error *error)
@@ -406,7 +416,7 @@ void lr_wavefront_destroy(lr_wavefront *wavefront)
         return;
     for (size_t i = 0; i < COUNT_OF(w->programs); i++)
         if (w->programs[i])
-            w->device->vk.vkDestroyPipeline(w->device->handle, w->programs[i], NULL);
+            lr_program_give_back(w->device, w->programs[i]);
     lr_layout_destroy(w->device, &w->layout);
     for (size_t i = 0; i < COUNT_OF(w->buffers); i++)
         lr_buffer_destroy(w->device, &w->buffers[i]);

@@ -18,7 +18,8 @@ lr_status lr_scene_from_text(const char *text, size_t length, const char *name,
 typedef struct lr_scene_builder {
     lr_scene *scene;
     const lr_scene *beside;    /* NULL, or the scene that this one goes into: limits are for both */
-    const lr_scene *donors[2]; /* NULL, or scenes whose parts may be shared */
+    const lr_scene *donors[2]; /* NULL, or scenes whose parts may be shared, */
+    bool trusting;             /* ... even if their files have changed since */
     uint32_t camera_capacity, material_capacity, object_capacity, light_capacity;
     uint32_t mesh_capacity, texture_capacity, note_capacity, part_capacity;
 } lr_scene_builder;

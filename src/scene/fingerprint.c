@@ -10,6 +10,7 @@
 
 #include "base/hash.h"
 #include "scene/camera.h"
+#include "scene/moment.h"
 
 typedef struct hasher {
     SHA2_CTX context;
@@ -274,6 +275,16 @@ static void put_texture(hasher *h, const lr_texture *texture)
     put_floats(h, texture->floats, 3 * texels);
 }
 
+/* Nothing where all but cameras stand still, so that scenes without keys keep their hash. */
+static void put_motion(hasher *h, const lr_scene *scene)
+{
+    if (!lr_scene_blurs_any(scene))
+        return;
+    put_word(h, scene->motion, 8);
+    for (uint32_t i = 0; i < scene->camera_count; i++)
+        put_number(h, scene->cameras[i].shutter);
+}
+
 void lr_scene_hash(const lr_scene *scene, char hash[65])
 {
     unsigned char digest[SHA256_DIGEST_LENGTH];
@@ -299,6 +310,7 @@ void lr_scene_hash(const lr_scene *scene, char hash[65])
     put_count(&h, scene->texture_count);
     for (uint32_t i = 0; i < scene->texture_count; i++)
         put_texture(&h, &scene->textures[i]);
+    put_motion(&h, scene);
     put_bytes(&h, NULL, 0);
     SHA256Final(digest, &h.context);
     lr_hash_text(digest, hash);

@@ -1,4 +1,4 @@
-#include "scene/scene.h"
+#include "scene/moment.h"
 
 #include <string.h>
 
@@ -16,6 +16,7 @@ void lr_scene_get_info(const lr_scene *scene, lr_scene_info *info)
         .notes = (const char *const *)scene->notes,
         .note_count = scene->note_count,
         .moves = scene->moves,
+        .blurs = lr_scene_blurs_any(scene),
     };
     for (uint32_t i = 0; i < scene->mesh_count; i++)
         info->triangles += scene->meshes[i].triangle_count;

@@ -54,7 +54,7 @@ static const lr_field camera_fields[] = {
      MEMBER(lr_camera, blade_rotation),
      .doc = "Degrees, clockwise in the picture; at 0 a corner points up."},
     {"shutter", LR_FIELD_NUMBER, 0, RANGE(0, 1), DEFAULT(0), MEMBER(lr_camera, shutter),
-     .doc = "Fraction of a frame that the shutter is open: how far a moving camera blurs."},
+     .doc = "Fraction of a frame that the shutter is open: how far what moves is blurred."},
 };
 const lr_record lr_camera_record =
     RECORD("camera", "Where the picture is taken from.", camera_fields, 0);

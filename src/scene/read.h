@@ -48,6 +48,9 @@ typedef struct lr_reader {
     lr_mixes mixes;
     uint32_t default_material; /* UINT32_MAX until an object needs it */
     uint32_t nesting;          /* of groups */
+    uint32_t keyed;            /* values with keys that change, so far */
+    bool beside_motion;        /* what is being read moves nothing in the picture */
+    bool moment;               /* the scene is a moment of another: cameras stand still */
     bool full;                 /* too many objects or materials: reported, reading has stopped */
 } lr_reader;
 

@@ -8,7 +8,7 @@
 /* What a group hands down. */
 typedef struct surroundings {
     lr_transform to_world;
-    bool transformed;
+    bool transformed, moves;
     uint32_t material; /* UINT32_MAX: none */
 } surroundings;
 
@@ -55,10 +55,12 @@ static void read_group(lr_reader *reader, const lr_node *key, const lr_node *val
     lr_object_draft draft = {0};
     lr_given given;
     const lr_record *record = &lr_group_record;
+    uint32_t keyed = reader->keyed;
     bool valid = lr_read_record(reader, value, key, record, &draft, &given);
     const lr_node *material = lr_given_value(&given, record, "material");
     const lr_node *objects = lr_given_value(&given, record, "objects");
     surroundings inside = *around;
+    inside.moves = around->moves || reader->keyed > keyed;
     if (material)
         inside.material = lr_read_material_use(reader, material);
     valid = valid && compose(reader, &draft, record, &given, key, around, &inside.to_world,
@@ -104,6 +106,7 @@ static void place_mesh(lr_reader *reader, const lr_object *object, const lr_mesh
         lr_object placed = file->objects[i];
         placed.line = object->line;
         placed.shadow = object->shadow;
+        placed.moves = object->moves;
         if (object->material != UINT32_MAX)
             placed.material = object->material;
         if (object->transformed) {
@@ -126,9 +129,11 @@ static void read_object(lr_reader *reader, const lr_record *record, const lr_nod
 {
     lr_object_draft draft = {0};
     lr_given given;
+    uint32_t keyed = reader->keyed;
     bool valid = lr_read_record(reader, value, key, record, &draft, &given);
     lr_object *object = &draft.object;
     object->kind = (lr_object_kind)record->kind;
+    object->moves = around->moves || reader->keyed > keyed;
     object->line = key->line;
     const lr_node *material = lr_given_value(&given, record, "material");
     object->material = material ? lr_read_material_use(reader, material) : around->material;

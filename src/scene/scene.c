@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "scene/build.h"
 #include "scene/camera.h"
+#include "scene/moment.h"
 #include "scene/part.h"
 
 #include <stdlib.h>
@@ -74,11 +75,14 @@ static void read_camera(lr_reader *reader, const lr_node *node, const lr_node *n
         return;
     *camera = (lr_camera){.line = name ? name->line : node->line, .up = up};
     const lr_node *at = name ? name : node;
+    bool around = reader->beside_motion;
+    reader->beside_motion = true;
     bool valid = lr_read_record(reader, node, at, &lr_camera_record, camera, &given);
     if (name && !(camera->name = lr_string_copy(name->text, name->count)))
         reader->report->no_memory = true;
-    if (valid && check_camera(reader, camera, &given, at) && camera->shutter > 0)
+    if (valid && check_camera(reader, camera, &given, at) && camera->shutter > 0 && !reader->moment)
         read_closing(reader, node, at, up, camera);
+    reader->beside_motion = around;
 }
 
 static void read_cameras(lr_reader *reader, const lr_node *node, lr_vec3 up)
@@ -152,8 +156,10 @@ void lr_read_scene(lr_reader *reader, const lr_node *root)
      */
     lr_given ignored;
     read_all_cameras(reader, root, &given, draft.up);
+    reader->beside_motion = true;
     if (image)
         lr_read_record(reader, image, image, &lr_image_record, scene, &ignored);
+    reader->beside_motion = false;
     if (fog)
         lr_read_record(reader, fog, fog, &lr_fog_record, scene, &ignored);
     if (air)
@@ -220,6 +226,7 @@ void lr_scene_destroy(lr_scene *scene)
     free(scene->objects);
     free(scene->lights);
     free(scene->source);
+    lr_retold_free(scene->retold);
     free(scene);
 }
 
@@ -238,6 +245,7 @@ void lr_read_tree(const lr_tree *tree, lr_scene *scene, lr_report *report,
         .report = report, .scene = scene, .builder.scene = scene, .default_material = UINT32_MAX};
     if (options)
         reader.options = *options;
+    scene->frame = reader.options.frame;
     reader.builder.donors[0] = reader.options.previous;
     reader.locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     if (!reader.locale)
@@ -259,7 +267,20 @@ static void read_text(lr_scene *scene, lr_report *report, const lr_load_options 
     lr_tree tree;
     lr_tree_read(&tree, report);
     lr_read_tree(&tree, scene, report, options, lr_read_scene);
+    if (lr_scene_blurs_any(scene) && !lr_scene_retell(scene, report, options, &tree))
+        report->no_memory = true;
     lr_tree_free(&tree);
+}
+
+static void read_moment(lr_reader *reader, const lr_node *root)
+{
+    reader->moment = reader->scene->moment = reader->builder.trusting = true;
+    lr_read_scene(reader, root);
+}
+
+static void read_retold(lr_scene *scene, lr_report *report, const lr_load_options *options)
+{
+    lr_read_tree(&options->previous->retold->tree, scene, report, options, read_moment);
 }
 
 lr_status lr_scene_from_text(const char *text, size_t length, const char *name,
@@ -316,6 +337,17 @@ lr_status lr_scene_parse_with(const char *text, size_t length, const char *name,
 {
     return lr_scene_from_text(text, length, name, &lr_scene_language, options, read_text, scene,
                               report, error);
+}
+
+lr_status lr_scene_read_moment(const lr_scene *scene, double frame, lr_scene **moment,
+                               char **report, lr_error *error)
+{
+    const lr_retold *retold = scene->retold;
+    lr_load_options options = retold->options;
+    options.frame = frame;
+    options.previous = scene;
+    return lr_scene_from_text(retold->text, retold->length, scene->source, &lr_scene_language,
+                              &options, read_retold, moment, report, error);
 }
 
 lr_status lr_scene_parse(const char *text, size_t length, const char *name, lr_scene **scene,

@@ -148,6 +148,7 @@ typedef struct lr_object {
     bool open;             /* cylinder, cone: without end caps */
     bool inward;           /* sphere, open cylinder and cone: only its inside is there */
     bool transformed;      /* to_world is not the identity */
+    bool moves;            /* it has values with keys, or a group around it has */
     lr_transform to_world; /* of the object and of the groups around it; invertible */
     union {
         struct {
@@ -236,7 +237,8 @@ typedef struct lr_camera {
     } closing;
 } lr_camera;
 
-struct lr_part; /* part.h */
+struct lr_part;   /* part.h */
+struct lr_retold; /* moment.h */
 
 struct lr_scene {
     char *source;    /* the name that stands in messages */
@@ -257,8 +259,14 @@ struct lr_scene {
     uint32_t note_count;
     lr_light *lights; /* empty only when the scene says `lights: []` */
     uint32_t light_count;
-    bool moves;         /* some value changes from frame to frame */
-    bool default_light; /* no `lights` key: the renderer adds one that suits the camera */
+    double frame;             /* in which values with keys are read */
+    bool moves;               /* some value changes from frame to frame */
+    bool things_move;         /* ... from this one on, beside those of cameras and the image, */
+    double moves_from;        /* ... and in this frame the first of them begins to */
+    uint64_t motion;          /* a hash of all that is keyed from this frame to the next */
+    bool moment;              /* one of the moments that a picture is made of; moment.h */
+    struct lr_retold *retold; /* NULL, or what its moments are read from */
+    bool default_light;       /* no `lights` key: the renderer adds one that suits the camera */
     lr_color ambient;
     lr_background background;
     lr_vec3 background_up; /* unit */

@@ -11,6 +11,7 @@ objects:
   - sphere: {material: {color: {keys: {0: red, 4: blue}}}}
 END
 scene=$work/moves.yaml
+root=$PWD
 mkdir "$work/frames"
 cd "$work/frames" || exit 1
 expect 0 "$lavaray" render "$scene" --frames 2-4 -o 'f-%03d.ppm'
@@ -32,10 +33,27 @@ cat f-002.ppm f-003.ppm f-004.ppm | cmp -s - "$work/stream.ppm" || problem 'the 
 if command -v pamfile >/dev/null; then
     [ "$(pamfile -allimages "$work/stream.ppm" | grep -c '24 by 16')" = 3 ] || problem 'netpbm sees no 3 frames'
 fi
+# The command lines of docs/scene.md as they stand there: a film of all frames, and one that loses nothing.
 if command -v ffmpeg >/dev/null; then
-    "$lavaray" render -q "$scene" --frames 0-4 -o - |
-        ffmpeg -v error -f image2pipe -framerate 24 -i - -f framecrc - >"$work/crc" || problem 'ffmpeg fails'
-    [ "$(grep -vc '^#' "$work/crc")" = 5 ] || problem 'ffmpeg sees no 5 frames'
+    sed 's/width: 480, height: 300, samples: 64/width: 60, height: 40, samples: 4/' \
+        "$root/scenes/animation.yaml" >"$work/scene.yaml"
+    grep '^    lavaray render .*| ffmpeg' "$root/docs/scene.md" >"$work/lines"
+    [ "$(wc -l <"$work/lines")" = 2 ] || problem 'docs/scene.md has other command lines'
+    (
+        set -e -o pipefail
+        lavaray() { "$LAVARAY" "$@"; }
+        cd "$work"
+        . "$work/lines"
+    ) </dev/null 2>"$work/err" || problem "a command line of docs/scene.md fails: $(tail -n 3 "$work/err")"
+    for film in scene.mp4 scene.mkv; do
+        ffmpeg -v error -i "$work/$film" -f framecrc - </dev/null >"$work/crc" || problem "$film does not play"
+        [ "$(grep -vc '^#' "$work/crc")" = 48 ] || problem "$film has no 48 frames"
+    done
+    "$lavaray" render -q "$work/scene.yaml" --frames 0-47 -o - >"$work/stream.ppm" || problem 'no stream'
+    ffmpeg -v error -i "$work/scene.mkv" -f image2pipe -c:v ppm - </dev/null | cmp -s - "$work/stream.ppm" ||
+        problem 'the film is not the frames'
+else
+    echo 'no ffmpeg: films are not tested' >&2
 fi
 
 # What is wrong is said before anything is written.

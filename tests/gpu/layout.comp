@@ -217,6 +217,7 @@ void main()
     put(work.step);
     put(work.film_first);
     put(work.film_pitch); put(work.samples); put(work.rounds); put(work.resumed);
+    put(work.plane_rows); put(work.sphere_rows); put(work.flat_rows); put(work.solid_rows);
     put(counters.hit_groups); put(counters.hit_groups_y); put(counters.hit_groups_z);
     put(counters.hits); put(counters.rays); put(counters.traced); put(counters.shaded);
     put(counters.reflected); put(counters.refracted); put(counters.passed);

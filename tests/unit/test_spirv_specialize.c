@@ -4,7 +4,7 @@
 
 #include "gpu_layout.h"
 #include "camera.spv.h"
-#include "path.spv.h"
+#include "path_loop.spv.h"
 #include "shade.spv.h"
 #include "trace.spv.h"
 
@@ -14,6 +14,7 @@ enum {
     OP_CONSTANT_FALSE = 42,
     OP_SPEC_CONSTANT_TRUE = 48,
     OP_SPEC_CONSTANT_FALSE = 49,
+    OP_SPEC_CONSTANT = 50,
     OP_SPEC_CONSTANT_OP = 52,
     OP_FUNCTION = 54,
     OP_DECORATE = 71,
@@ -32,7 +33,7 @@ static const struct {
     {"trace", trace_spv, sizeof trace_spv / 4},
     {"shade", shade_spv, sizeof shade_spv / 4},
     {"camera", camera_spv, sizeof camera_spv / 4},
-    {"path", path_spv, sizeof path_spv / 4},
+    {"path_loop", path_loop_spv, sizeof path_loop_spv / 4},
 };
 enum { KERNEL_COUNT = sizeof kernels / sizeof *kernels };
 
@@ -61,6 +62,7 @@ static void check_folded(const lr_spirv *module)
         switch (w[0] & 0xFFFF) {
         case OP_SPEC_CONSTANT_TRUE:
         case OP_SPEC_CONSTANT_FALSE:
+        case OP_SPEC_CONSTANT:
         case OP_SPEC_CONSTANT_OP:
             fail_msg("a specialisation constant is left");
             break;
@@ -193,6 +195,28 @@ static void test_pictures_have_no_notes(void **state)
         }
 }
 
+/* Of what stands behind `if (number > k)` each is there that the number reaches. */
+static void test_numbers(void **state)
+{
+    (void)state;
+    uint32_t constants[LR_SPEC_COUNT] = {[LR_SPEC_FEW] = 1, [LR_SPEC_FLATS] = 1};
+    size_t before = 0, first = 0;
+    for (uint32_t flats = 0; flats <= LR_FEW_FLATS + 1; flats++) {
+        constants[LR_SPEC_FEW_FLATS] = flats;
+        check_module(3, constants);
+        lr_spirv module = specialize(3, constants);
+        size_t more = module.count - before;
+        before = module.count;
+        lr_spirv_free(&module);
+        first = flats == 1 ? more : first;
+        if (flats > 1 && flats <= LR_FEW_FLATS)
+            assert_true(more > first / 2 && more < 2 * first);
+        if (flats > LR_FEW_FLATS)
+            assert_int_equal(more, 0);
+    }
+    assert_true(first > 300);
+}
+
 /* Constants that are not given keep what the module says. */
 static void test_defaults(void **state)
 {
@@ -200,6 +224,10 @@ static void test_defaults(void **state)
     uint32_t defaults[LR_SPEC_COUNT];
     for (int i = 0; i < LR_SPEC_COUNT; i++)
         defaults[i] = i != LR_SPEC_EXPLAIN;
+    defaults[LR_SPEC_FEW_PLANES] = LR_FEW_PLANES;
+    defaults[LR_SPEC_FEW_SPHERES] = LR_FEW_SPHERES;
+    defaults[LR_SPEC_FEW_FLATS] = LR_FEW_FLATS;
+    defaults[LR_SPEC_FEW_SOLIDS] = LR_FEW_SOLIDS;
     lr_spirv given = specialize(0, defaults), left;
     assert_int_equal(lr_spirv_specialize(trace_spv, sizeof trace_spv / 4, NULL, 0, &left, NULL),
                      LR_OK);
@@ -244,6 +272,7 @@ int main(void)
         cmocka_unit_test(test_random_choices),
         cmocka_unit_test(test_what_is_ruled_out_is_gone),
         cmocka_unit_test(test_pictures_have_no_notes),
+        cmocka_unit_test(test_numbers),
         cmocka_unit_test(test_defaults),
         cmocka_unit_test(test_truncated),
     };
