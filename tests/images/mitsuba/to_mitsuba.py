@@ -288,7 +288,7 @@ def load(path, size=None):
         ((kind, o),) = item.items()
         result["object%d" % i] = shape(kind, o, materials, folder)
     if air:
-        fill_air(result, medium(air))
+        fill_air(result, medium(dict(air)))
     if air or any("interior" in s for s in result.values() if isinstance(s, dict)):
         result["integrator"]["type"] = "volpath"
     choose_by_power([s for s in result.values() if "emitter" in s])
