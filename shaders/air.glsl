@@ -12,14 +12,14 @@ uint medium_of(gpu_ray ray)
     return has_media ? media_top(ray_media(ray)) : 0u;
 }
 
-// What is left of light after t metres.
+// What is left of light after t metres; with media that scatter that is flight.glsl's matter, but for fog.
 vec3 remaining_after(float t, uint medium)
 {
     vec3 rate = vec3(0.0);
     if (has_fog)
         rate = vec3(frame.fog_density);
     if (has_media && medium != 0u)
-        rate = has_absorption ? load_medium(medium).absorption : vec3(0.0);
+        rate = has_absorption && !has_scattering ? load_medium(medium).absorption : vec3(0.0);
     vec3 depth = rate * t;
     return vec3(ex_exp2(-depth.x), ex_exp2(-depth.y), ex_exp2(-depth.z));
 }

@@ -61,6 +61,8 @@ layout(constant_id = LR_SPEC_SHEEN) const bool has_sheen = true;
 layout(constant_id = LR_SPEC_HIGHLIGHT) const bool has_highlight = true;
 layout(constant_id = LR_SPEC_OREN_NAYAR) const bool has_oren_nayar = true;
 layout(constant_id = LR_SPEC_MODELS) const bool has_models = true;
+layout(constant_id = LR_SPEC_MIX) const bool has_mixes = true;
+layout(constant_id = LR_SPEC_SCATTERING) const bool has_scattering = true;
 layout(constant_id = LR_SPEC_FEW_PLANES) const uint few_planes = LR_FEW_PLANES;
 layout(constant_id = LR_SPEC_FEW_SPHERES) const uint few_spheres = LR_FEW_SPHERES;
 layout(constant_id = LR_SPEC_FEW_FLATS) const uint few_flats = LR_FEW_FLATS;

@@ -10,6 +10,7 @@
 #include "emitter.glsl"
 #include "few.glsl"
 #include "film.glsl"
+#include "flight.glsl"
 #include "queue.glsl"
 #include "sampler.glsl"
 #include "shading.glsl"
@@ -83,23 +84,45 @@ vec3 arriving(vec3 origin, light_sample light, vec3 value, uint pixel, bool want
     return arrives;
 }
 
+// What media leave of the light of a source on its way to where those are. Light that comes straight through
+// solids is dimmed by these: obstacle.glsl.
+vec3 left_on_the_way(uvec4 media, light_sample light)
+{
+    uint medium = has_media ? media_top(media) : 0u;
+    vec3 left = left_of(load_medium(medium), light.t_max);
+    return mix(left, vec3(1.0), bvec3(medium != 0u && light.pdf == 0.0));
+}
+
 // Takes the path of a ray that has met something on by a bounce: `ray` and `path` become those of the next
 // ray. Whether there is one. All invocations must call this together; those that do not want it add nothing.
 bool bounce(bool wanted, nearest_hit met, inout gpu_ray ray, inout gpu_path path, inout film_sum sum,
             inout ray_counts counts)
 {
-    bool hit = wanted && met.primitive != LR_PRIMITIVE_NONE;
-    bool beyond = wanted && !hit, last = (ray.state & LR_STATE_LAST) != 0u;
+    bool last = (ray.state & LR_STATE_LAST) != 0u;
+    uint depth = ray.state & LR_STATE_DEPTH, pair = pair_bounces + depth * pairs_a_bounce;
+    path_key key = path_key(path.pixel, path.order);
 
     vec3 fog;
     vec3 weight = weight_after(ray, met.t, fog);
     if (has_fog && wanted)
         film_accumulate(sum, fog);
+    flight way = no_flight;
+    if (has_scattering) {
+        uint segment = (ray.state >> LR_STATE_PASSES_SHIFT) + depth * uint(LR_PASSES_MAX + 1);
+        way = fly(ray, met.t, sample_pair(key, pair_flights + segment), wanted && !last);
+        weight = weight * way.weight;
+    }
+    bool hit = wanted && met.primitive != LR_PRIMITIVE_NONE && !way.scatters;
+    bool beyond = wanted && !hit && !way.scatters;
 
-    shading here = shading_at(gpu_hit(0u, met.t, met.primitive, hit ? met.object : 0u), ray);
+    vec2 chances = sample_pair(key, pair + pair_roulette);
+    gpu_hit seen = gpu_hit(0u, met.t, met.primitive, hit ? met.object : 0u);
+    shading here = shading_at(seen, ray, chances.y);
     surface s = here.at;
     gpu_material m = here.material;
     boundary sides = boundary_at(ray, s, here.ids, m.ior, here.absent);
+    if (has_mixes)
+        sides = sides_of_part(sides, m);
     bool solid_there = hit && !sides.hidden;
 
     // The light that is there.
@@ -115,41 +138,56 @@ bool bounce(bool wanted, nearest_hit met, inout gpu_ray ray, inout gpu_path path
         film_accumulate(sum, weight * found * power_heuristic(path.pdf, pdf));
 
     // The light of one source.
-    uint depth = ray.state & LR_STATE_DEPTH, pair = pair_bounces + depth * pairs_a_bounce;
-    path_key key = path_key(path.pixel, path.order);
     vec2 choices = sample_pair(key, pair + pair_choices);
     basis around = basis_around(here.lit_by);
     vec3 wo = to_local(around, -ray.direction);
-    vec2 chances = sample_pair(key, pair + pair_roulette);
     bsdf b = load_bsdf(here.ids.x, m, here.color, here.gloss, sides, wo, chances.y);
     vec3 origin = s.lit_from + here.n * s.offset;
-    bool scatters = solid_there && !last;
+    if (has_scattering)
+        origin = mix(origin, way.position, bvec3(way.scatters));
+    bool scatters = (solid_there && !last) || way.scatters;
     bool deepest = depth >= frame.depth;
     light_sample light = sample_light_at(origin, choices.x, sample_pair(key, pair + pair_light_point));
     vec3 local_wi = to_local(around, light.wi);
     bsdf_value towards = evaluate_bsdf(b, wo, local_wi);
     bool in_front = ex_dot(light.wi, here.n) > 0.0;
+    uvec4 lit_media = ray_media(ray);
     if (has_rough_glass) {
         // Light from behind comes through; interpolated normals must not take one side for the other.
         bool behind = !in_front && local_wi.z < 0.0;
         origin = mix(origin, s.position - here.n * s.offset, bvec3(behind));
         in_front = behind || (in_front && local_wi.z > 0.0);
+        lit_media = mix(lit_media, sides.beyond, bvec4(behind && !way.scatters));
+    }
+    if (has_scattering && way.scatters) {
+        float share = phase_at(way.anisotropy, ex_dot(ray.direction, light.wi));
+        towards = bsdf_value(vec3(share), share);
+        origin = way.position;
+        in_front = true;
     }
     vec3 value = weight * towards.f * light.value * power_heuristic(light.pdf, towards.pdf);
+    if (has_scattering)
+        value = value * left_on_the_way(lit_media, light);
     bool reaches = scatters && in_front && any(greaterThanEqual(value, vec3(LR_FILM_STEP)));
     value = arriving(origin, light, value, ray.pixel, reaches, counts);
     if (!has_trees)
         film_accumulate(sum, value);
 
     // The next ray.
-    bsdf_sample next = sample_bsdf(b, wo, choices.y, sample_pair(key, pair + pair_direction));
+    vec2 aim = sample_pair(key, pair + pair_direction);
+    bsdf_sample next = sample_bsdf(b, wo, choices.y, aim);
     vec3 wi = to_world(around, next.wi);
+    if (has_scattering && way.scatters) {
+        wi = sample_phase(way.anisotropy, ray.direction, aim);
+        float density = phase_at(way.anisotropy, ex_dot(ray.direction, wi));
+        next = bsdf_sample(wi, vec3(1.0), density, LR_BSDF_REFLECTS);
+    }
     bool through = (next.kind & LR_BSDF_TRANSMITS) != 0u;
     vec3 side = through ? -here.n : here.n;
     vec3 arrived = weight;
     weight = arrived * next.weight;
     float survives = depth < roulette_from ? 1.0 : min(brightest(weight) * roulette_margin, 1.0);
-    bool goes_on = scatters && next.kind != 0u && ex_dot(wi, side) > 0.0 &&
+    bool goes_on = scatters && next.kind != 0u && (ex_dot(wi, side) > 0.0 || way.scatters) &&
                    !(brightest(weight) < LR_WEIGHT_MIN) && !(brightest(weight) < frame.min_weight) &&
                    chances.x < survives;
     weight = survives < 1.0 ? weight * ex_rcp(max(survives, 1.0e-20)) : weight;
@@ -172,7 +210,10 @@ bool bounce(bool wanted, nearest_hit met, inout gpu_ray ray, inout gpu_path path
 
     counts.traced += uint(wanted);
     counts.hits += uint(hit);
-    ray = gpu_ray(s.position + side * s.offset, ray.pixel, ex_normalize(wi), state, weight, ray.note,
+    vec3 from = s.position + side * s.offset;
+    if (has_scattering)
+        from = mix(from, way.position, bvec3(way.scatters));
+    ray = gpu_ray(from, ray.pixel, ex_normalize(wi), state, weight, ray.note,
                   media.x, media.y, media.z, media.w);
     path = gpu_path(path.pixel, path.order, bounce_pdf, distance);
     return goes_on;

@@ -40,4 +40,16 @@ boundary boundary_at(gpu_ray ray, surface s, uvec3 ids, float ior, bool absent)
     return b;
 }
 
+// The same where a mix that fills a solid shows a part that lets no light through.
+boundary sides_of_part(boundary b, gpu_material part)
+{
+    if (has_media) {
+        bool opaque = all(equal(part.transmit, vec3(0.0)));
+        b.solid = b.solid && !opaque;
+        b.ior2 = mix(b.ior2, part.ior, opaque);
+        b.gamma = mix(b.gamma, 1.0, opaque);
+    }
+    return b;
+}
+
 #endif

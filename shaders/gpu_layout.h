@@ -111,7 +111,9 @@ typedef struct vec4 {
 #define LR_SPEC_BUMP_MAPS 62   /* ... of its heights, */
 #define LR_SPEC_GLOSS_MAPS 63  /* ... paths: of its roughness or metal, */
 #define LR_SPEC_EMISSION_MAPS 64 /* ... of the light that it sends out */
-#define LR_SPEC_COUNT 65
+#define LR_SPEC_MIX 65        /* paths: some material is a mix of others */
+#define LR_SPEC_SCATTERING 66 /* paths: some medium scatters light, or there is air */
+#define LR_SPEC_COUNT 67
 
 #define LR_FEW_PLANES 4 /* and the most that there may be: held.glsl */
 #define LR_FEW_SPHERES 8
@@ -303,10 +305,12 @@ LR_ROWS(gpu_object, 5)
 
 /* Indexed by rank; rank 0 is the empty space around everything. */
 struct gpu_medium {
-    vec3 absorption; /* per metre, times log2(e) */
+    vec3 absorption; /* per metre, times log2(e); of paths with `scattering` added */
     float ior;
+    vec3 scattering; /* the same */
+    float anisotropy;
 };
-LR_ROWS(gpu_medium, 1)
+LR_ROWS(gpu_medium, 2)
 
 #define LR_GPU_PATTERN_NONE 0u
 #define LR_GPU_PATTERN_CHECKER 1u
@@ -392,6 +396,18 @@ struct gpu_bsdf {
     uint unused2;
 };
 LR_ROWS(gpu_bsdf, 5)
+
+/* The materials that a mix is of; its gpu_material has the share of the second as its colour. */
+struct gpu_mix {
+    uint first; /* LR_GPU_MIX_NONE: it is no mix */
+    uint second;
+    uint unused0;
+    uint unused1;
+};
+LR_ROWS(gpu_mix, 1)
+#define LR_GPU_MIX_NONE 0xFFFFFFFFu
+#define LR_GPU_MIX_NESTING_MAX 4u
+
 #define LR_ALPHA_MIN 1.0e-3
 #define LR_SHEEN_ALPHA_MIN 1.0e-2
 #define LR_RATIO_FLAT 0.02 /* rough glass is smooth with a ratio of indices this close to 1 */
@@ -643,8 +659,12 @@ struct gpu_frame {
     uint albedo;       /* row of the tables, */
     uint glass_albedo; /* and of those of glass */
     uint maps;         /* row of the gpu_maps of material 0 */
+    uint mixes;        /* row of the gpu_mix of material 0 */
+    uint unused_frame0;
+    uint unused_frame1;
+    uint unused_frame2;
 };
-LR_ROWS(gpu_frame, 30)
+LR_ROWS(gpu_frame, 31)
 #define LR_GPU_INSPECT_NORMAL 1u
 #define LR_GPU_INSPECT_DEPTH 2u
 #define LR_GPU_INSPECT_OBJECT 3u

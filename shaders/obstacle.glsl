@@ -17,7 +17,8 @@ uvec3 tint(vec2 crossing, float t_max, uvec4 shadow)
     bool second = crossing.y > 0.0 && crossing.y < t_max;
     uint surfaces = (first ? 1u : 0u) + (second ? 1u : 0u);
     uvec3 add = shadow.xyz * surfaces;
-    if (has_absorption && surfaces != 0u && shadow.w != 0u) {
+    bool dims = surfaces != 0u || has_scattering; // that of both ends within one solid
+    if ((has_absorption || has_scattering) && dims && shadow.w != 0u) {
         float inside = max(min(crossing.y, t_max) - max(crossing.x, 0.0), 0.0);
         add += uvec3(min(load_medium(shadow.w).absorption * inside, vec3(40.0)) * LR_SHADOW_UNIT);
     }

@@ -18,6 +18,7 @@ const uint pair_lens = 1u;
 const uint pair_time = 2u;
 const uint pair_bounces = 4u;
 const uint pairs_a_bounce = 4u;
+const uint pair_flights = 4096u; // those of the ways between surfaces, in media that scatter light
 const uint pair_light_point = 0u; // within a bounce
 const uint pair_choices = 1u;     // which light; which lobe
 const uint pair_direction = 2u;

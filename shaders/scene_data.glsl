@@ -140,8 +140,9 @@ uvec4 load_object_shadow(uint index)
 
 gpu_medium load_medium(uint rank)
 {
-    vec4 a = scene_row_float(frame.media + rank);
-    return gpu_medium(a.xyz, a.w);
+    uint at = frame.media + 2u * rank;
+    vec4 a = scene_row_float(at), b = scene_row_float(at + 1u);
+    return gpu_medium(a.xyz, a.w, b.xyz, b.w);
 }
 
 gpu_material load_material(uint index)

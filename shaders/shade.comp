@@ -154,7 +154,8 @@ void main()
     bool wanted = index < counters.hits;
     gpu_hit hit = load_hit(wanted ? index : 0u);
     gpu_ray ray = load_ray(hit.ray);
-    shading at = shading_at(hit, ray);
+    float chance = 0.0; // ray trees have no mixes
+    shading at = shading_at(hit, ray, chance);
     surface s = at.at;
     uvec3 ids = at.ids;
     gpu_material m = at.material;

@@ -3,15 +3,13 @@
 #define SHADING_GLSL
 
 #include "maps.glsl"
-#include "pattern.glsl"
+#include "mix.glsl"
 #include "queue.glsl"
 #include "scene_data.glsl"
-#include "surface.glsl"
-#include "texture.glsl"
 
 struct shading {
     surface at;
-    uvec3 ids; // of the object: load_object_ids
+    uvec3 ids; // of the object: load_object_ids; of a mix the material that shows
     gpu_material material;
     vec3 color;
     bool absent; // the surface has a hole there
@@ -29,20 +27,30 @@ vec3 facing(vec3 n, vec3 d)
     return cosine < least ? ex_normalize(n - d * (least - cosine)) : n;
 }
 
-shading shading_at(gpu_hit hit, gpu_ray ray)
+// A part of a mix with the light that the whole surface sends out.
+gpu_material shining_as(gpu_material part, gpu_material whole)
+{
+    part.emission_red = whole.emission_red;
+    part.emission_green = whole.emission_green;
+    part.emission_blue = whole.emission_blue;
+    part.flags = (part.flags & ~LR_GPU_FRONT_ONLY) | (whole.flags & LR_GPU_FRONT_ONLY);
+    return part;
+}
+
+// `chance`: chosen_material.
+shading shading_at(gpu_hit hit, gpu_ray ray, inout float chance)
 {
     surface s = surface_at(hit, ray.origin, ray.direction);
     uvec3 ids = load_object_ids(s.object);
-    gpu_material m = load_material(ids.x);
-    vec3 color = m.color0;
-    if (has_patterns)
-        color = pattern_color(m, s.object, s.position, s.normal);
-    bool absent = false;
-    if (has_textures) {
-        vec4 texel = material_texel(m, s.uv);
-        color = color * texel.xyz;
-        absent = has_cutouts && is_hole(m.pattern, m.inv_size, texel.w);
+    uint whole = ids.x;
+    gpu_material m = load_material(whole);
+    if (has_mixes) {
+        ids.x = chosen_material(ids.x, s, chance);
+        m = shining_as(load_material(ids.x), m);
     }
+    vec4 paint = paint_at(m, s);
+    vec3 color = paint.xyz;
+    bool absent = has_textures && has_cutouts && is_hole(m.pattern, m.inv_size, paint.w);
     vec3 n = ex_dot(ray.direction, s.normal) < 0.0 ? s.normal : -s.normal;
     vec3 lit_by = n, upright = s.shading;
     vec2 gloss = vec2(1.0);
@@ -55,7 +63,7 @@ shading shading_at(gpu_hit hit, gpu_ray ray)
         if (has_gloss_maps)
             gloss = gloss_texel(maps, s.uv);
         if (has_emission_maps)
-            dim_emission(maps, s.uv, m);
+            dim_emission(load_maps(whole), s.uv, m);
     }
     if (has_corners)
         color = color * s.tint;

@@ -41,9 +41,11 @@ void dim(uint k, obstacle by, vec2 crossing)
     bool meets = by.there && crosses(crossing, t_max), blocked = meets;
     uvec3 takes = uvec3(LR_SHADOW_OPAQUE);
     if (has_transparent) {
-        if (by.transparent && ((through >> (k & 31u)) & 1u) != 0u)
+        bool passes = by.transparent && ((through >> (k & 31u)) & 1u) != 0u;
+        if (passes)
             takes = tint(crossing, t_max, by.shadow);
-        uvec3 depth = min(ray_depth[k] + (meets ? takes : uvec3(0u)), uvec3(LR_SHADOW_OPAQUE));
+        bool within = has_scattering && passes && by.there;
+        uvec3 depth = min(ray_depth[k] + (meets || within ? takes : uvec3(0u)), uvec3(LR_SHADOW_OPAQUE));
         ray_depth[k] = depth;
         blocked = depth == uvec3(LR_SHADOW_OPAQUE);
     }

@@ -1,4 +1,4 @@
-# make.py: writes the pictures of scenes/textures.yaml, surroundings.yaml and maps.yaml beside itself, and that of the
+# make.py: writes the pictures of scenes/textures.yaml, surroundings.yaml, maps.yaml and mix.yaml beside itself, and that of the
 # test scene cutout.
 import math
 import pathlib
@@ -181,6 +181,22 @@ def hdr(path, width, height, color):
                                 + b"".join(bytes(runs([p[k] for p in row])) for k in range(4)) for row in rows))
 
 
+def waves(x, y, size):
+    """Numbers 0 to 1 at the corners of cells, blended between them; it repeats every 128."""
+    i, j = x // size, y // size
+    s, t = (k % size / size for k in (x, y))
+    s, t = s * s * (3 - 2 * s), t * t * (3 - 2 * t)
+    corner = [[hashed("wave", size, (i + a) * size % 128, (j + b) * size % 128) for a in (0, 1)] for b in (0, 1)]
+    upper, lower = (row[0] * (1 - s) + row[1] * s for row in corner)
+    return upper * (1 - t) + lower * t
+
+
+def rust(x, y):
+    """White where there is rust."""
+    depth = sum(waves(x, y, size) * size for size in (32, 16, 8, 4)) / 60
+    return (int(min(max((depth - 0.5) * 14, 0), 1) * 255),) * 3
+
+
 hdr(here / "studio.hdr", 128, 64, studio)
 png(here / "crate.png", 96, 96, crate)
 png(here / "tiles.png", 128, 128, tiles)
@@ -188,4 +204,5 @@ png(here / "leaf.png", 64, 64, leaf, 4)
 for name, size, texel in (("bricks", 128, bricks), ("bricks-normal", 128, bricks_normal), ("plate", 128, plate),
                           ("plate-gloss", 128, plate_gloss), ("dents", 64, dents), ("sign", 96, sign)):
     png(here / f"{name}.png", size, size, texel)
+png(here / "rust.png", 128, 128, rust)
 png(here.parents[1] / "tests/images/scenes/cutout.png", 2, 1, cutout, 4)

@@ -14,11 +14,6 @@ vec3 lr_pack_vec3(lr_vec3 v)
     return (vec3){(float)v.x, (float)v.y, (float)v.z};
 }
 
-bool lr_color_is_black(lr_color color)
-{
-    return color.x == 0 && color.y == 0 && color.z == 0;
-}
-
 bool lr_pack_reserve(lr_packed_scene *packed, uint64_t rows)
 {
     uint64_t wanted = packed->row_count + rows;
@@ -71,12 +66,14 @@ static uint32_t pack_pattern_kind(const lr_pattern *pattern)
     return kinds[pattern->kind] | (pattern->object_space ? LR_GPU_OBJECT_SPACE : 0);
 }
 
-static void pack_material(const lr_scene *scene, const lr_material *m, struct gpu_material *out)
+/* `shown` is the pattern of what is looked up at a hit. */
+static void pack_material(const lr_scene *scene, const lr_material *m, const lr_pattern *shown,
+                          struct gpu_material *out)
 {
     lr_color ambient = multiply(m->ambient, scene->ambient);
     bool lit = !lr_color_is_black(ambient) || !lr_color_is_black(m->diffuse) ||
                !lr_color_is_black(m->specular) || !lr_color_is_black(m->emission);
-    const lr_pattern *p = &m->color;
+    const lr_pattern *p = shown;
     bool image = p->kind == LR_PATTERN_IMAGE;
     bool gradient = p->kind == LR_PATTERN_GRADIENT;
     lr_vec3 direction = gradient ? p->direction : lr_vec3_normalize(p->direction);
@@ -112,16 +109,19 @@ static lr_status pack_materials(const lr_scene *scene, lr_packed_scene *packed, 
     packed->frame.materials = packed->row_count;
     for (uint32_t i = 0; i < scene->material_count; i++) {
         const lr_material *m = &scene->materials[i];
+        /* Paths choose one of the materials of a mix by its weight. */
+        bool chosen = m->model == LR_MODEL_MIX && packed->constants[LR_SPEC_PATH];
+        const lr_pattern *shown = chosen ? &m->mix.weight : &m->color;
         struct gpu_material record;
-        pack_material(scene, m, &record);
+        pack_material(scene, m, shown, &record);
         if (lr_pack_rows(packed, &record, sizeof record / 16) == UINT32_MAX)
             return lr_fail(error, LR_ERROR_MEMORY, "out of memory for the scene's materials");
         uint32_t *use = packed->constants;
-        bool image = m->color.kind == LR_PATTERN_IMAGE;
+        bool image = shown->kind == LR_PATTERN_IMAGE;
         bool cut = image && m->alpha_cutoff > 0;
         use[LR_SPEC_TEXTURES] |= image;
         use[LR_SPEC_CUTOUTS] |= cut;
-        use[LR_SPEC_PATTERNS] |= !image && m->color.kind != LR_PATTERN_NONE;
+        use[LR_SPEC_PATTERNS] |= !image && shown->kind != LR_PATTERN_NONE;
         use[LR_SPEC_SPECULAR] |= !lr_color_is_black(m->specular);
         use[LR_SPEC_SCATTER] |=
             cut || !lr_color_is_black(m->reflect) || !lr_color_is_black(m->transmit);

@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "gpu_layout.h"
 #include "render/trees.h"
+#include "scene/color.h"
 #include "scene/scene.h"
 
 /* What pixels show. Anything but light needs kernels of its own. */
@@ -94,6 +95,5 @@ lr_status lr_pack_textures(const lr_scene *scene, lr_packed_scene *packed, lr_er
 void lr_pack_light(const lr_light *light, struct gpu_light *out);
 
 vec3 lr_pack_vec3(lr_vec3 v);
-bool lr_color_is_black(lr_color color);
 
 #endif

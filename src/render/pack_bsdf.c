@@ -29,6 +29,8 @@ static uint32_t gpu_model(const lr_material *m)
         return metal ? LR_GPU_MODEL_METAL : LR_GPU_MODEL_CONDUCTOR;
     case LR_MODEL_PBR:
         return LR_GPU_MODEL_PBR;
+    case LR_MODEL_MIX: /* of others */
+        break;
     }
     return LR_GPU_MODEL_CLASSIC;
 }
@@ -130,6 +132,24 @@ static bool pack_tables(lr_packed_scene *packed)
                                                    LR_GLASS_INTO + LR_GLASS_OUT_OF, packed);
 }
 
+/* Of every material its parts, if any is a mix and paths are to choose them. */
+static bool pack_mixes(const lr_scene *scene, lr_packed_scene *packed)
+{
+    bool mixed = false, good = true;
+    for (uint32_t i = 0; i < scene->material_count; i++)
+        mixed = mixed || scene->materials[i].model == LR_MODEL_MIX;
+    packed->constants[LR_SPEC_MIX] = mixed && packed->constants[LR_SPEC_PATH];
+    packed->frame.mixes = packed->row_count;
+    for (uint32_t i = 0; mixed && good && i < scene->material_count; i++) {
+        const lr_material *m = &scene->materials[i];
+        struct gpu_mix record = {.first = LR_GPU_MIX_NONE};
+        if (m->model == LR_MODEL_MIX)
+            record = (struct gpu_mix){.first = m->mix.first, .second = m->mix.second};
+        good = lr_pack_rows(packed, &record, sizeof record / 16) != UINT32_MAX;
+    }
+    return good;
+}
+
 lr_status lr_pack_bsdfs(const lr_scene *scene, lr_packed_scene *packed, lr_error *error)
 {
     uint32_t *use = packed->constants;
@@ -137,9 +157,10 @@ lr_status lr_pack_bsdfs(const lr_scene *scene, lr_packed_scene *packed, lr_error
     for (uint32_t i = 0; i < scene->material_count; i++) {
         struct gpu_bsdf record;
         pack_bsdf(&scene->materials[i], &record);
-        note_use(scene, &scene->materials[i], &record, use);
+        if (scene->materials[i].model != LR_MODEL_MIX)
+            note_use(scene, &scene->materials[i], &record, use);
         if (lr_pack_rows(packed, &record, sizeof record / 16) == UINT32_MAX)
             return no_memory(error);
     }
-    return pack_tables(packed) ? LR_OK : no_memory(error);
+    return pack_mixes(scene, packed) && pack_tables(packed) ? LR_OK : no_memory(error);
 }

@@ -30,7 +30,23 @@ static const lr_material *material_of(const lr_scene *scene, uint32_t object)
 
 static bool encloses_medium(const lr_material *m, const lr_primitive *p)
 {
-    return p->encloses && !lr_color_is_black(m->transmit) && m->model != LR_MODEL_THIN_GLASS;
+    return p->encloses && !lr_color_is_black(m->transmit) && !m->pane;
+}
+
+/* A record of the table of media; of paths all that takes light away is one. */
+static bool pack_medium(lr_color absorption, lr_color scattering, double anisotropy, double ior,
+                        lr_packed_scene *packed)
+{
+    bool scatters = !lr_color_is_black(scattering) && packed->constants[LR_SPEC_PATH];
+    packed->constants[LR_SPEC_SCATTERING] |= scatters;
+    struct gpu_medium medium = {.ior = (float)ior};
+    if (scatters) {
+        absorption = lr_vec3_add(absorption, scattering);
+        medium.scattering = lr_pack_vec3(lr_vec3_scale(scattering, LOG2_E));
+        medium.anisotropy = (float)anisotropy;
+    }
+    medium.absorption = lr_pack_vec3(lr_vec3_scale(absorption, LOG2_E));
+    return lr_pack_rows(packed, &medium, sizeof medium / 16) != UINT32_MAX;
 }
 
 /* Packs the table of media and gives the ranks of the objects' media in ranks[]. */
@@ -48,18 +64,16 @@ static lr_status pack_media(const lr_scene *scene, const lr_primitive *primitive
     }
     qsort(order, count, sizeof *order, compare_media);
 
-    struct gpu_medium outside = {.ior = 1};
-    packed->frame.media = lr_pack_rows(packed, &outside, 1);
-    bool fits = packed->frame.media != UINT32_MAX;
+    bool paths = packed->constants[LR_SPEC_PATH];
+    lr_color absorption = paths ? scene->air.absorption : (lr_color){0, 0, 0};
+    packed->constants[LR_SPEC_SCATTERING] = !lr_color_is_black(absorption);
+    packed->frame.media = packed->row_count;
+    bool fits = pack_medium(absorption, scene->air.scattering, scene->air.anisotropy, 1, packed);
     for (uint32_t i = 0; fits && i < count; i++) {
         uint32_t object = order[i].object;
         const lr_material *m = material_of(scene, object);
         ranks[object] = i + 1;
-        struct gpu_medium medium = {
-            .absorption = lr_pack_vec3(lr_vec3_scale(m->absorption, LOG2_E)),
-            .ior = (float)m->ior,
-        };
-        fits = lr_pack_rows(packed, &medium, 1) != UINT32_MAX;
+        fits = pack_medium(m->absorption, m->scattering, m->anisotropy, m->ior, packed);
         packed->constants[LR_SPEC_MEDIA] = 1;
         packed->constants[LR_SPEC_ABSORPTION] |= !lr_color_is_black(m->absorption);
     }
@@ -101,7 +115,7 @@ static uint32_t flags_of(const lr_scene *scene, uint32_t object, const lr_primit
 {
     const lr_material *m = material_of(scene, object);
     bool inward = scene->objects[object].inward;
-    return (p->encloses && m->model != LR_MODEL_THIN_GLASS ? LR_FLAG_SOLID : 0) |
+    return (p->encloses && !m->pane ? LR_FLAG_SOLID : 0) |
            (lr_color_is_black(m->transmit) ? 0 : LR_FLAG_TRANSPARENT) |
            (scene->objects[object].shadow ? LR_FLAG_SHADOW : 0) | (inward ? LR_FLAG_INWARD : 0) |
            ((m->one_sided || inward) && p->sided ? LR_FLAG_ONE_SIDED : 0);

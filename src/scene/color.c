@@ -160,6 +160,21 @@ static const struct {
 
 #define CSS_COUNT (sizeof css_colors / sizeof css_colors[0])
 
+bool lr_color_is_black(lr_color color)
+{
+    return color.x == 0 && color.y == 0 && color.z == 0;
+}
+
+bool lr_colors_equal(lr_color a, lr_color b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+double lr_color_luminance(lr_color c)
+{
+    return c.y + 0.2126 * (c.x - c.y) + 0.0722 * (c.z - c.y);
+}
+
 double lr_srgb_to_linear(unsigned value)
 {
     double c = value / 255.0;

@@ -5,6 +5,12 @@
 #include "scene/names.h"
 #include "scene/scene.h"
 
+bool lr_color_is_black(lr_color color);
+bool lr_colors_equal(lr_color a, lr_color b);
+
+/* Rec. 709, of linear light; of a grey its own value, to the last bit. */
+double lr_color_luminance(lr_color color);
+
 /* The linear value of an sRGB component 0..255, the same on every C library. */
 double lr_srgb_to_linear(unsigned value);
 

@@ -3,6 +3,8 @@
  * order is that of docs/info.md. */
 #include "scene/fingerprint.h"
 
+#include "scene/color.h"
+
 #include <sha2.h>
 #include <string.h>
 
@@ -99,6 +101,11 @@ static void put_surroundings(hasher *h, const lr_scene *scene)
     put_vector(h, scene->background_up);
     put_number(h, scene->fog_density);
     put_vector(h, scene->fog_density > 0 ? scene->fog_color : (lr_color){0, 0, 0});
+    if (!lr_color_is_black(scene->air.absorption) || !lr_color_is_black(scene->air.scattering)) {
+        put_vector(h, scene->air.absorption);
+        put_vector(h, scene->air.scattering);
+        put_number(h, scene->air.anisotropy);
+    }
 }
 
 static void put_camera(hasher *h, const lr_camera *camera)
@@ -136,16 +143,21 @@ static void put_light(hasher *h, const lr_light *light)
     put_count(h, light->shadows);
 }
 
+static void put_pattern(hasher *h, const lr_pattern *p)
+{
+    put_count(h, p->kind);
+    put_count(h, p->object_space);
+    put_vector(h, p->colors[0]);
+    put_vector(h, p->colors[1]);
+    put_count(h, p->texture);
+    put_number(h, p->size);
+    put_vector(h, p->origin);
+    put_vector(h, p->direction);
+}
+
 static void put_material(hasher *h, const lr_material *m)
 {
-    put_count(h, m->color.kind);
-    put_count(h, m->color.object_space);
-    put_vector(h, m->color.colors[0]);
-    put_vector(h, m->color.colors[1]);
-    put_count(h, m->color.texture);
-    put_number(h, m->color.size);
-    put_vector(h, m->color.origin);
-    put_vector(h, m->color.direction);
+    put_pattern(h, &m->color);
     const lr_color *colors[] = {&m->ambient,  &m->diffuse,  &m->specular,  &m->reflect,
                                 &m->transmit, &m->emission, &m->absorption};
     for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
@@ -171,6 +183,15 @@ static void put_material(hasher *h, const lr_material *m)
         put_count(h, m->maps[i].texture);
         put_count(h, m->maps[i].channel);
         put_number(h, m->maps[i].amount);
+    }
+    if (!lr_color_is_black(m->scattering)) {
+        put_vector(h, m->scattering);
+        put_number(h, m->anisotropy);
+    }
+    if (m->model == LR_MODEL_MIX) {
+        put_count(h, m->mix.first);
+        put_count(h, m->mix.second);
+        put_pattern(h, &m->mix.weight);
     }
 }
 

@@ -100,6 +100,18 @@ static const lr_field fog_fields[] = {
 };
 const lr_record lr_fog_record = RECORD("fog", "Fog outside of all objects.", fog_fields, 0);
 
+static const lr_field air_fields[] = {
+    {"absorption", LR_FIELD_COLOR, 0, COLOR, DEFAULT(0), MEMBER(lr_scene, air.absorption),
+     .doc = "Per metre: what is left is exp(-absorption * distance)."},
+    {"scattering", LR_FIELD_COLOR, 0, COLOR, DEFAULT(0), MEMBER(lr_scene, air.scattering),
+     .doc = "Per metre: light that goes on in another direction."},
+    {"anisotropy", LR_FIELD_NUMBER, 0, RANGE(-0.95, 0.95), DEFAULT(0),
+     MEMBER(lr_scene, air.anisotropy),
+     .doc = "Which direction that is: back, below 0, evenly all around, or on, above 0."},
+};
+const lr_record lr_air_record =
+    RECORD("air", "What fills the space outside of all objects, for paths.", air_fields, 0);
+
 #define BACKGROUND(member) MEMBER(lr_background_draft, background.member)
 #define BACKGROUND_INTENSITY                                                                       \
     {                                                                                              \
@@ -282,6 +294,12 @@ static const lr_field material_fields[] = {
      .doc = "Share light between mirroring and transmission by angle, as glass does."},
     {"absorption", LR_FIELD_COLOR, 0, COLOR, DEFAULT(0), MEMBER(lr_material, absorption),
      .doc = "Per metre inside: what is left is exp(-absorption * distance)."},
+    {"scattering", LR_FIELD_COLOR, 0, COLOR, DEFAULT(0), MEMBER(lr_material, scattering),
+     .doc = "Per metre inside: light that goes on in another direction, as in milk; only paths "
+            "see it."},
+    {"anisotropy", LR_FIELD_NUMBER, 0, RANGE(-0.95, 0.95), DEFAULT(0),
+     MEMBER(lr_material, anisotropy),
+     .doc = "Which direction that is: back, below 0, evenly all around, or on, above 0."},
     {"priority", LR_FIELD_INTEGER, 0, RANGE(-100, 100), DEFAULT(0), MEMBER(lr_material, priority),
      .doc = "Where media overlap, the higher one fills the overlap."},
     {"emission", LR_FIELD_COLOR, 0, COLOR, DEFAULT(0), MEMBER(lr_material, emission),
@@ -292,6 +310,13 @@ static const lr_field material_fields[] = {
      .doc = "Where the picture's alpha is below this, there is no surface."},
     {"one_sided", LR_FIELD_BOOLEAN, 0, DEFAULT(0), MEMBER(lr_material, one_sided),
      .doc = "Flat and open objects are not there as seen from behind."},
+    {"first", LR_FIELD_MATERIAL, LR_DERIVED, .derived = "required by `model: mix`",
+     .doc = "One of the two materials of a mix: a name, or a material written here."},
+    {"second", LR_FIELD_MATERIAL, LR_DERIVED, .derived = "required by `model: mix`",
+     .doc = "The other one."},
+    {"weight", LR_FIELD_PAINT, 0, RANGE(0, 1), DEFAULT(0.5, 0.5, 0.5),
+     MEMBER(lr_material, mix.weight),
+     .doc = "Share of the second: a number, a pattern or a picture, whose luminance counts."},
     SHARE("roughness", roughness, "From smooth to rough; its square is the width of the facets."),
     {"metal", LR_FIELD_CHOICE, 0, DEFAULT(LR_METAL_NONE), MEMBER(lr_material, metal),
      .choices = lr_metal_names,
@@ -550,6 +575,8 @@ static const lr_field scene_fields[] = {
             "or the sky."},
     {"fog", LR_FIELD_RECORD, LR_DERIVED, .record = &lr_fog_record, .derived = "no fog",
      .doc = "Fog outside of all objects."},
+    {"air", LR_FIELD_RECORD, LR_DERIVED, .record = &lr_air_record, .derived = "nothing",
+     .doc = "What fills the space outside of all objects, for paths; in place of fog."},
     {"up", LR_FIELD_VECTOR, LR_NONZERO, COORDINATE, DEFAULT(0, 1, 0), MEMBER(lr_scene_draft, up),
      .doc = "Up for the background and for cameras that do not say."},
     {"materials", LR_FIELD_MATERIALS, 0, .doc = "Materials by name."},

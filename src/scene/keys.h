@@ -110,7 +110,7 @@ typedef struct lr_scene_draft {
     double version;
 } lr_scene_draft;
 
-extern const lr_record lr_scene_record, lr_camera_record, lr_image_record, lr_fog_record,
+extern const lr_record lr_scene_record, lr_camera_record, lr_image_record, lr_fog_record, lr_air_record,
     lr_material_record, lr_rotation_record, lr_group_record;
 /* Of maps: the same order as lr_map_kind, which is also that of these keys of a material. */
 extern const lr_record lr_map_records[LR_MAP_COUNT];

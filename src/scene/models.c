@@ -1,12 +1,14 @@
 #include "scene/models.h"
 
+#include "scene/color.h"
+
 #include <math.h>
 #include <string.h>
 
 #define MOST_SHININESS 1e6
 
 const char *const lr_model_names[] = {"classic", "diffuse",    "dielectric", "conductor",
-                                      "pbr",     "thin_glass", NULL};
+                                      "pbr",     "thin_glass", "mix",        NULL};
 const char *const lr_metal_names[] = {"none",     "gold",     "silver", "copper", "aluminium",
                                       "chromium", "tungsten", "iron",   "nickel", NULL};
 
@@ -17,6 +19,7 @@ enum {
     CONDUCTOR = 1 << LR_MODEL_CONDUCTOR,
     PBR = 1 << LR_MODEL_PBR,
     THIN_GLASS = 1 << LR_MODEL_THIN_GLASS,
+    MIX = 1 << LR_MODEL_MIX,
 };
 
 /* Keys that are not every model's. */
@@ -35,6 +38,8 @@ static const struct {
     {"ior", CLASSIC | DIELECTRIC | PBR | THIN_GLASS},
     {"fresnel", CLASSIC},
     {"absorption", CLASSIC | DIELECTRIC | PBR},
+    {"scattering", CLASSIC | DIELECTRIC | PBR},
+    {"anisotropy", CLASSIC | DIELECTRIC | PBR},
     {"priority", CLASSIC | DIELECTRIC | PBR},
     {"roughness", DIFFUSE | DIELECTRIC | CONDUCTOR | PBR | THIN_GLASS},
     {"metal", CONDUCTOR},
@@ -48,6 +53,12 @@ static const struct {
     {"sheen_roughness", PBR},
     {"roughness_map", DIFFUSE | DIELECTRIC | CONDUCTOR | PBR | THIN_GLASS},
     {"metallic_map", PBR},
+    {"alpha_cutoff", CLASSIC | DIFFUSE | DIELECTRIC | CONDUCTOR | PBR | THIN_GLASS},
+    {"normal_map", CLASSIC | DIFFUSE | DIELECTRIC | CONDUCTOR | PBR | THIN_GLASS},
+    {"bump_map", CLASSIC | DIFFUSE | DIELECTRIC | CONDUCTOR | PBR | THIN_GLASS},
+    {"first", MIX},
+    {"second", MIX},
+    {"weight", MIX},
 };
 
 bool lr_model_has_key(lr_model model, const char *key)
@@ -161,4 +172,97 @@ void lr_approximate(lr_material *m)
     if (m->model == LR_MODEL_PBR)
         approximate_pbr(m);
     m->ambient = m->diffuse;
+}
+
+/* ---- Mixes ---- */
+
+static lr_color blend(lr_color a, lr_color b, double share)
+{
+    return lr_vec3_add(lr_vec3_scale(a, 1 - share), lr_vec3_scale(b, share));
+}
+
+/* The mean of about 2^16 texels. */
+static lr_color texture_mean(const lr_texture *t)
+{
+    double linear[256];
+    for (unsigned i = 0; i < 256; i++)
+        linear[i] = lr_srgb_to_linear(i);
+    size_t count = (size_t)t->width * t->height, step = 1 + count / 65536, used = 0;
+    lr_color sum = {0, 0, 0};
+    for (size_t i = 0; i < count; i += step, used++) {
+        const uint8_t *b = t->bytes ? &t->bytes[4 * i] : NULL;
+        const float *f = b ? NULL : &t->floats[3 * i];
+        lr_color texel =
+            b ? (lr_color){linear[b[0]], linear[b[1]], linear[b[2]]} : (lr_color){f[0], f[1], f[2]};
+        sum = lr_vec3_add(sum, texel);
+    }
+    return lr_vec3_scale(sum, 1.0 / (double)used);
+}
+
+static lr_color pattern_mean(const lr_scene *scene, const lr_pattern *p)
+{
+    if (p->kind == LR_PATTERN_NONE)
+        return p->colors[0];
+    if (p->kind == LR_PATTERN_IMAGE && p->texture >= scene->texture_count)
+        return p->colors[0]; /* it could not be read */
+    if (p->kind == LR_PATTERN_IMAGE)
+        return multiply(p->colors[0], texture_mean(&scene->textures[p->texture]));
+    return blend(p->colors[0], p->colors[1], 0.5);
+}
+
+static double weight_of(lr_color weight)
+{
+    return fmin(lr_color_luminance(weight), 1);
+}
+
+static void take_inside(lr_material *m, const lr_material *from)
+{
+    m->ior = from->ior;
+    m->absorption = from->absorption;
+    m->scattering = from->scattering;
+    m->anisotropy = from->anisotropy;
+    m->priority = from->priority;
+    m->pane = from->pane;
+}
+
+static double ratio(double a, double b)
+{
+    return b > 0 ? a / b : 0;
+}
+
+void lr_approximate_mix(const lr_scene *scene, lr_material *m)
+{
+    const lr_material *first = &scene->materials[m->mix.first];
+    const lr_material *second = &scene->materials[m->mix.second];
+    const lr_pattern *weight = &m->mix.weight;
+    double share = weight_of(pattern_mean(scene, weight));
+    lr_color first_color = pattern_mean(scene, &first->color);
+    lr_color second_color = pattern_mean(scene, &second->color);
+    lr_color matt[2] = {multiply(first->diffuse, first_color),
+                        multiply(second->diffuse, second_color)};
+    m->color = *weight;
+    for (int i = 0; i < 2; i++)
+        m->color.colors[i] = blend(matt[0], matt[1], weight_of(weight->colors[i]));
+    if (weight->kind == LR_PATTERN_IMAGE) {
+        m->color.kind = LR_PATTERN_NONE;
+        m->color.colors[0] = m->color.colors[1] = blend(matt[0], matt[1], share);
+    }
+    lr_color mean = blend(matt[0], matt[1], share);
+    lr_color ambient = blend(multiply(first->ambient, first_color),
+                             multiply(second->ambient, second_color), share);
+    m->diffuse = grey(1);
+    m->ambient =
+        (lr_color){ratio(ambient.x, mean.x), ratio(ambient.y, mean.y), ratio(ambient.z, mean.z)};
+    m->specular = blend(first->specular, second->specular, share);
+    m->reflect = blend(first->reflect, second->reflect, share);
+    m->transmit = blend(first->transmit, second->transmit, share);
+    bool second_shines =
+        greatest(second->specular) * share > greatest(first->specular) * (1 - share);
+    m->shininess = second_shines ? second->shininess : first->shininess;
+    m->highlight = second_shines ? second->highlight : first->highlight;
+    bool second_transmits = greatest(second->transmit) > greatest(first->transmit);
+    take_inside(m, second_transmits ? second : first);
+    double mirror_first = (1 - share) * greatest(lr_vec3_add(first->reflect, first->transmit));
+    double mirror_second = share * greatest(lr_vec3_add(second->reflect, second->transmit));
+    m->fresnel = mirror_second > mirror_first ? second->fresnel : first->fresnel;
 }

@@ -23,4 +23,9 @@ lr_color lr_metal_facing(lr_color eta, lr_color k);
  * `transmit` keep what they are. */
 void lr_approximate(lr_material *material);
 
+/* The same of a mix, whose parts are complete, along with all that says what it encloses: that is
+ * what the part encloses that lets light through. Its colour is the weight's pattern in the colours
+ * of both parts, averaged, and so are all other shares with the weight's mean. */
+void lr_approximate_mix(const lr_scene *scene, lr_material *material);
+
 #endif

@@ -25,6 +25,18 @@ typedef struct lr_mesh_files {
     uint32_t count, capacity;
 } lr_mesh_files;
 
+/* A mix of materials whose parts are still to be found. */
+typedef struct lr_mix {
+    uint32_t material;
+    const lr_node *at, *first, *second; /* NULL: not given */
+} lr_mix;
+
+typedef struct lr_mixes {
+    lr_mix *items;
+    uint32_t count, capacity;
+    bool open; /* parts are being read: what they add is completed with the rest */
+} lr_mixes;
+
 typedef struct lr_reader {
     lr_report *report;
     lr_scene *scene;
@@ -33,6 +45,7 @@ typedef struct lr_reader {
     lr_mesh_files files;       /* read so far */
     locale_t locale;           /* "C", whatever the program chose */
     lr_names materials;        /* names to indices of scene->materials */
+    lr_mixes mixes;
     uint32_t default_material; /* UINT32_MAX until an object needs it */
     uint32_t nesting;          /* of groups */
     uint32_t keyed;            /* values with keys that change, so far */
@@ -100,6 +113,8 @@ const lr_record *lr_read_kind(lr_reader *reader, const lr_node *item, const char
 void lr_read_materials(lr_reader *reader, const lr_node *node);
 /* The material that `node`, a name or a mapping, stands for; UINT32_MAX after reporting. */
 uint32_t lr_read_material_use(lr_reader *reader, const lr_node *node);
+/* Completes the mixes that have been added since the last time, when all materials have names. */
+void lr_complete_mixes(lr_reader *reader);
 /* The material of objects that name none; UINT32_MAX when memory is out. */
 uint32_t lr_default_material(lr_reader *reader);
 

@@ -27,7 +27,7 @@ bool lr_read_picture(lr_reader *reader, const lr_node *node, const char *file, l
     return !status;
 }
 
-/* The colour of a material: a colour, or a mapping with a key that names a pattern. */
+/* A colour, or a mapping with a key that names a pattern. */
 static bool read_paint(lr_reader *reader, const lr_node *node, const lr_field *field,
                        lr_pattern *pattern)
 {
@@ -52,9 +52,11 @@ static bool read_paint(lr_reader *reader, const lr_node *node, const lr_field *f
             for (uint32_t i = 0; i < lr_pattern_record_count; i++)
                 lr_nearest_offer(&nearest, lr_pattern_records[i].name);
         }
-        lr_report_unknown(
-            reader, nearest.best ? at : node,
-            "color has no pattern, expected checker, stripes, gradient, rings or image", &nearest);
+        char message[128];
+        snprintf(message, sizeof message,
+                 "%s has no pattern, expected checker, stripes, gradient, rings or image",
+                 field->name);
+        lr_report_unknown(reader, nearest.best ? at : node, message, &nearest);
         return false;
     }
     lr_pattern_draft draft = {.pattern.direction = {0, 1, 0}, .pattern.size = 1};
@@ -171,31 +173,63 @@ static void complete_model(lr_reader *reader, const lr_given *given, lr_material
         material->color.colors[0] = material->color.colors[1] = (lr_color){1, 1, 1};
     if (lr_model_is_glass(material->model) && !lr_given_value(given, record, "transmit"))
         material->transmit = (lr_color){1, 1, 1};
+    material->pane = material->model == LR_MODEL_THIN_GLASS;
     lr_approximate(material);
 }
 
-/* Reads a material over its defaults. The result is usable even when errors were reported. */
+/* Reads the colour or pattern of a field, if it is given, over the field's default. */
+static void read_field_paint(lr_reader *reader, const lr_given *given, const char *name,
+                             lr_pattern *pattern)
+{
+    const lr_field *field = &lr_material_record.fields[lr_field_index(&lr_material_record, name)];
+    const double *d = field->fallback;
+    *pattern = (lr_pattern){.colors[0] = {d[0], d[1], d[2]},
+                            .colors[1] = {d[0], d[1], d[2]},
+                            .size = 1,
+                            .direction = {0, 1, 0}};
+    const lr_node *node = lr_given_value(given, &lr_material_record, name);
+    if (!node)
+        return;
+    read_paint(reader, node, field, pattern);
+    if (pattern->kind == LR_PATTERN_NONE)
+        pattern->colors[1] = pattern->colors[0];
+}
+
+/* Keeps what there is of a mix until its parts can be found. */
+static void add_mix(lr_reader *reader, const lr_given *given, const lr_node *at,
+                    lr_material *material)
+{
+    lr_mixes *mixes = &reader->mixes;
+    read_field_paint(reader, given, "weight", &material->mix.weight);
+    if (!lr_array_reserve((void **)&mixes->items, mixes->count, &mixes->capacity,
+                          sizeof *mixes->items)) {
+        reader->report->no_memory = true;
+        return;
+    }
+    mixes->items[mixes->count++] = (lr_mix){
+        .material = (uint32_t)(material - reader->scene->materials),
+        .at = at,
+        .first = lr_given_value(given, &lr_material_record, "first"),
+        .second = lr_given_value(given, &lr_material_record, "second"),
+    };
+}
+
+/* Reads a material over its defaults. The result is usable even when errors were reported; a mix is
+ * still to be completed. */
 static void read_material(lr_reader *reader, const lr_node *node, const lr_node *at,
                           lr_material *material)
 {
     const lr_record *record = &lr_material_record;
     lr_given given;
     *material = (lr_material){.line = at->line};
-    const double *grey = record->fields[lr_field_index(record, "color")].fallback;
-    material->color = (lr_pattern){.colors[0] = {grey[0], grey[1], grey[2]},
-                                   .colors[1] = {grey[0], grey[1], grey[2]},
-                                   .size = 1,
-                                   .direction = {0, 1, 0}};
     lr_read_record(reader, node, at, record, material, &given);
-    const lr_node *color = lr_given_value(&given, record, "color");
-    if (color) {
-        const lr_field *field = &record->fields[lr_field_index(record, "color")];
-        read_paint(reader, color, field, &material->color);
-        if (material->color.kind == LR_PATTERN_NONE)
-            material->color.colors[1] = material->color.colors[0];
-    }
+    read_field_paint(reader, &given, "color", &material->color);
     check_keys(reader, &given, material->model);
     read_maps(reader, &given, material);
+    if (material->model == LR_MODEL_MIX) {
+        add_mix(reader, &given, at, material);
+        return;
+    }
     if (material->model != LR_MODEL_CLASSIC) {
         complete_model(reader, &given, material);
         return;
@@ -282,6 +316,7 @@ void lr_read_materials(lr_reader *reader, const lr_node *node)
         }
         material->name = name;
     }
+    lr_complete_mixes(reader);
 }
 
 static void report_unknown_material(lr_reader *reader, const lr_node *node)
@@ -324,6 +359,7 @@ uint32_t lr_read_material_use(lr_reader *reader, const lr_node *node)
     if (!material)
         return UINT32_MAX;
     read_material(reader, node, node, material);
+    lr_complete_mixes(reader);
     return index;
 }
 

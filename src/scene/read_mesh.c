@@ -174,6 +174,10 @@ void lr_drop_unused_materials(lr_reader *reader)
         scene->material_count = kept;
         for (uint32_t i = 0; i < scene->object_count; i++)
             scene->objects[i].material = moved[scene->objects[i].material];
+        for (uint32_t i = 0; i < kept; i++) {
+            scene->materials[i].mix.first = moved[scene->materials[i].mix.first];
+            scene->materials[i].mix.second = moved[scene->materials[i].mix.second];
+        }
     } else {
         reader->report->no_memory = true;
     }

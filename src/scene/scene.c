@@ -140,12 +140,14 @@ void lr_read_scene(lr_reader *reader, const lr_node *root)
     scene->background_up = up;
     lr_record_defaults(&lr_image_record, scene);
     lr_record_defaults(&lr_fog_record, scene);
+    lr_record_defaults(&lr_air_record, scene);
     const lr_field *sky = &record->fields[lr_field_index(record, "background")];
     scene->background.colors[0] = (lr_color){sky->fallback[0], sky->fallback[1], sky->fallback[2]};
     scene->background.colors[1] = (lr_color){sky->fallback[3], sky->fallback[4], sky->fallback[5]};
 
     const lr_node *image = lr_given_value(&given, record, "image");
     const lr_node *fog = lr_given_value(&given, record, "fog");
+    const lr_node *air = lr_given_value(&given, record, "air");
     const lr_node *background = lr_given_value(&given, record, "background");
     const lr_node *materials = lr_given_value(&given, record, "materials");
     const lr_node *lights = lr_given_value(&given, record, "lights");
@@ -160,6 +162,11 @@ void lr_read_scene(lr_reader *reader, const lr_node *root)
     reader->beside_motion = false;
     if (fog)
         lr_read_record(reader, fog, fog, &lr_fog_record, scene, &ignored);
+    if (air)
+        lr_read_record(reader, air, air, &lr_air_record, scene, &ignored);
+    if (air && fog)
+        lr_report_add(reader->report, air->offset,
+                      "air stands beside fog, expected one of the two");
     if (background)
         lr_read_background(reader, background, sky);
     if (materials)
@@ -249,6 +256,7 @@ void lr_read_tree(const lr_tree *tree, lr_scene *scene, lr_report *report,
         freelocale(reader.locale);
     lr_mesh_files_free(&reader.files);
     lr_names_free(&reader.materials);
+    free(reader.mixes.items);
 }
 
 /* Reads the report's text into the scene; what is wrong goes to the report. */

@@ -16,6 +16,7 @@ typedef lr_vec3 lr_color; /* x, y, z are red, green, blue; finite, >= 0 and <= L
 #define LR_LIGHTS_MAX 256
 #define LR_MATERIALS_MAX 65535
 #define LR_NONE UINT32_MAX /* instead of an index */
+#define LR_MIX_NESTING_MAX 4 /* a mix of mixes of mixes of mixes */
 
 /* How a texture goes on beyond 0..1. */
 typedef enum lr_wrap { LR_WRAP_REPEAT, LR_WRAP_CLAMP, LR_WRAP_MIRROR } lr_wrap;
@@ -113,6 +114,7 @@ typedef enum lr_model {
     LR_MODEL_CONDUCTOR,
     LR_MODEL_PBR,
     LR_MODEL_THIN_GLASS,
+    LR_MODEL_MIX,
 } lr_model;
 
 typedef enum lr_metal {
@@ -139,6 +141,8 @@ typedef struct lr_material {
     double ior; /* 0.01..100 */
     bool fresnel;
     lr_color absorption; /* per metre, Beer-Lambert: exp(-absorption * distance) */
+    lr_color scattering; /* per metre, only for paths */
+    double anisotropy;   /* -0.95..0.95: mean cosine of the angles that it scatters by */
     int priority;        /* -100..100: which of two overlapping media fills the overlap */
     double alpha_cutoff; /* where its texture's alpha is below, no surface; 0: everywhere */
     bool one_sided;      /* from behind, flats, triangles and open cones are not there */
@@ -150,6 +154,12 @@ typedef struct lr_material {
     lr_color sheen;                                                /* pbr: 0..1 */
     double sheen_roughness;
     lr_map maps[LR_MAP_COUNT]; /* as lr_map_kind */
+    bool pane; /* what it lets through goes straight on: it bounds no medium */
+    struct {
+        uint32_t first, second; /* materials without emission, holes and sides of their own */
+        lr_pattern weight;      /* share of the second: luminance, of which 1 counts at most */
+        uint32_t nesting;       /* 1: a mix of none; <= LR_MIX_NESTING_MAX */
+    } mix;
 } lr_material;
 
 typedef enum lr_object_kind {
@@ -296,6 +306,10 @@ struct lr_scene {
     lr_vec3 background_up; /* unit */
     lr_color fog_color;
     double fog_density; /* per metre; 0: no fog */
+    struct {            /* outside of all media, only for paths; all 0: nothing */
+        lr_color absorption, scattering; /* per metre */
+        double anisotropy;               /* as lr_material has it */
+    } air;
     struct {
         uint32_t width, height, samples; /* 1..32768, 1..32768, 0..65536; 0: as the
                                             integrator needs */

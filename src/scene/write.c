@@ -92,11 +92,6 @@ void lr_put_origin(const lr_writer *writer, const char *mark)
             lr_shown(shown, source, strlen(source)), LR_VERSION);
 }
 
-bool lr_colors_equal(lr_color a, lr_color b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 bool lr_color_is_grey(lr_color color)
 {
     return color.x == color.y && color.y == color.z;

@@ -2,6 +2,7 @@
 #ifndef LR_SCENE_WRITE_H
 #define LR_SCENE_WRITE_H
 
+#include "scene/color.h"
 #include "scene/scene.h"
 
 #include <stdio.h>
@@ -54,7 +55,6 @@ void lr_put_floats(FILE *out, const float *values, uint32_t count);
 /* A line "MARK from NAME, written by lavaray VERSION", where no name can end the line. */
 void lr_put_origin(const lr_writer *writer, const char *mark);
 
-bool lr_colors_equal(lr_color a, lr_color b);
 bool lr_color_is_grey(lr_color color);
 double lr_color_greatest(lr_color color);
 

@@ -279,7 +279,7 @@ static void put_surroundings(lr_writer *writer)
 {
     const lr_scene *scene = writer->scene;
     FILE *out = writer->out;
-    mapping image = {.out = out}, fog = image;
+    mapping image = {.out = out}, fog = image, air = image;
     fputs("image: ", out);
     put_record(&image, &lr_image_record, scene, NULL);
     end_mapping(&image);
@@ -294,6 +294,12 @@ static void put_surroundings(lr_writer *writer)
         fputs("fog: ", out);
         put_record(&fog, &lr_fog_record, scene, NULL);
         end_mapping(&fog);
+        fputc('\n', out);
+    }
+    if (!lr_color_is_black(scene->air.absorption) || !lr_color_is_black(scene->air.scattering)) {
+        fputs("air: ", out);
+        put_record(&air, &lr_air_record, scene, NULL);
+        end_mapping(&air);
         fputc('\n', out);
     }
 }
@@ -391,6 +397,23 @@ static void put_material_name(lr_writer *writer, uint32_t index)
         fprintf(writer->out, "%s%u", writer->names, (unsigned)index + 1);
 }
 
+/* The keys that are no single numbers or colours. */
+static void put_paints(lr_writer *writer, mapping *map, const lr_material *material)
+{
+    if (lr_model_has_key(material->model, "color")) {
+        put_key(map, "color");
+        put_paint(writer, &material->color);
+    }
+    if (material->model != LR_MODEL_MIX)
+        return;
+    put_key(map, "first");
+    put_material_name(writer, material->mix.first);
+    put_key(map, "second");
+    put_material_name(writer, material->mix.second);
+    put_key(map, "weight");
+    put_paint(writer, &material->mix.weight);
+}
+
 static void put_materials(lr_writer *writer)
 {
     const lr_scene *scene = writer->scene;
@@ -400,10 +423,7 @@ static void put_materials(lr_writer *writer)
         fputs("  ", writer->out);
         put_material_name(writer, i);
         fputs(": ", writer->out);
-        if (lr_model_has_key(scene->materials[i].model, "color")) {
-            put_key(&map, "color");
-            put_paint(writer, &scene->materials[i].color);
-        }
+        put_paints(writer, &map, &scene->materials[i]);
         put_properties(&map, &scene->materials[i]);
         put_maps(writer, &map, &scene->materials[i]);
         end_mapping(&map);

@@ -24,6 +24,7 @@ layout(std430, set = 0, binding = LR_BIND_COUNT) readonly buffer RecordBlock
     gpu_material some_material[2];
     gpu_maps some_maps[2];
     gpu_bsdf some_bsdf[2];
+    gpu_mix some_mix[2];
     gpu_texture some_texture[2];
     gpu_light some_light[2];
     gpu_emitter some_emitter[2];
@@ -102,7 +103,8 @@ void put_solid(gpu_solid x)
 
 void put_medium(gpu_medium x)
 {
-    put_vec3(x.absorption); put(floatBitsToUint(x.ior));
+    put_vec3(x.absorption); put(floatBitsToUint(x.ior)); put_vec3(x.scattering);
+    put(floatBitsToUint(x.anisotropy));
 }
 
 void put_material(gpu_material x)
@@ -208,6 +210,7 @@ void main()
     put(floatBitsToUint(frame.lens.turns_across)); put_vec3(frame.lens.down_step);
     put(floatBitsToUint(frame.lens.turns_down));
     put(frame.bsdfs); put(frame.albedo); put(frame.glass_albedo); put(frame.maps);
+    put(frame.mixes); put(frame.unused_frame0); put(frame.unused_frame1); put(frame.unused_frame2);
     put(work.tile_x); put(work.tile_y); put(work.tile_width); put(work.tile_height);
     put(work.first_sample); put(work.count); put(work.first); put(work.light);
     put(work.light_count); put(work.first_lights); put(work.shadow_room);

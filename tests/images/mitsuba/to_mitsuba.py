@@ -13,7 +13,8 @@ import mitsuba as mi
 import numpy as np
 import yaml
 
-import compensated as _  # registers it
+import compensated as _  # registers it, and this
+import mixed as _  # noqa: F811
 
 
 def take(mapping, **defaults):
@@ -52,6 +53,8 @@ def conductor(m):
 
 def dielectric(m):
     _, roughness, ior = take(m, model=0, roughness=0, ior=1.5)
+    if ior == 1:
+        return {"type": "null"}
     base = {"int_ior": float(ior), "ext_ior": 1.0}
     if not roughness:
         return {"type": "dielectric", **base}
@@ -80,18 +83,50 @@ def classic(m):
     return {"type": "blendbsdf", "weight": share, "matt": diffuse_bsdf, "mirror": mirror}
 
 
-def material(m):
-    """The BSDF, and the emitter or None. Ours have two sides; what emits is black from behind."""
+def mix(m, materials):
+    _, first, second, weight = take(m, model=0, first=None, second=None, weight=0.5)
+    return {"type": "mixed", "weight": float(weight),
+            "first": plain(named(first, materials), materials),
+            "second": plain(named(second, materials), materials)}
+
+
+def named(material_or_name, materials):
+    return materials[material_or_name] if isinstance(material_or_name, str) else material_or_name
+
+
+def plain(m, materials):
+    """The BSDF of what does not emit."""
+    model = m.get("model", "classic")
+    if model == "mix":
+        return mix(m, materials)
+    return {"classic": classic, "conductor": conductor, "dielectric": dielectric}[model](m)
+
+
+def medium(m):
+    """What fills the inside or the air, taken out of the mapping m; None: nothing."""
+    absorption, scattering, g = (m.pop(key, 0) for key in ("absorption", "scattering", "anisotropy"))
+    rate = rgb(absorption) + rgb(scattering)
+    if not np.any(rate):
+        return None
+    albedo = np.divide(rgb(scattering), rate, out=np.zeros(3), where=rate > 0)
+    # Mitsuba's colours are at most 1.
+    return {"type": "homogeneous", "sigma_t": spectrum(list(rate / rate.max())), "scale": float(rate.max()),
+            "albedo": spectrum(list(albedo)), "phase": {"type": "hg", "g": float(g)}}
+
+
+def material(m, materials):
+    """The BSDF, and the emitter and the medium inside or None. Ours have two sides; what emits is black from behind."""
     m = dict(m)
     emission, emits = m.pop("emission", 0), m.pop("emits", "both")
-    model = m.get("model", "classic")
-    bsdf = {"classic": classic, "conductor": conductor, "dielectric": dielectric}[model](m)
+    inside = medium(m)
+    bsdf = plain(m, materials)
     if not np.any(rgb(emission)):
-        transmits = "dielectric" in bsdf.get("inner", bsdf)["type"]
-        return bsdf if transmits else {"type": "twosided", "bsdf": bsdf}, None
+        kind = bsdf.get("inner", bsdf)["type"]
+        transmits = "dielectric" in kind or kind == "null"
+        return bsdf if transmits else {"type": "twosided", "bsdf": bsdf}, None, inside
     if emits != "front":
         raise SystemExit("to_mitsuba.py: Mitsuba's lamps shine to the front alone")
-    return bsdf, {"type": "area", "radiance": spectrum(emission)}
+    return bsdf, {"type": "area", "radiance": spectrum(emission)}, inside
 
 
 # ---- Shapes
@@ -143,13 +178,15 @@ SHAPES = {"rectangle": rectangle, "disk": disk, "box": box, "sphere": sphere, "m
 def shape(kind, o, materials, folder):
     o = dict(o)
     name = o.pop("material", {})
-    bsdf, emitter = material(materials[name] if isinstance(name, str) else name)
+    bsdf, emitter, inside = material(named(name, materials), materials)
     moved = placement(o.pop("scale", 1), o.pop("rotate", [0, 0, 0]), o.pop("translate", [0, 0, 0]))
     if "file" in o:
         o["file"] = os.path.join(folder, o["file"])
     result = SHAPES[kind](**o)
     result["to_world"] = moved @ result.get("to_world", mi.ScalarTransform4f())
     result["bsdf"] = bsdf
+    if inside:
+        result["interior"] = inside
     if emitter:
         result["emitter"] = emitter
     return result
@@ -203,7 +240,7 @@ def choose_by_power(shapes):
     noise alone."""
     powers = []
     for s in shapes:
-        bare = mi.load_dict({key: value for key, value in s.items() if key != "emitter"})
+        bare = mi.load_dict({key: value for key, value in s.items() if key not in ("emitter", "exterior")})
         area = float(np.ravel(bare.surface_area())[0])
         powers.append(area * max(s["emitter"]["radiance"]["value"]))
     for s, power in zip(shapes, powers):
@@ -223,13 +260,22 @@ def sensor(camera, width, height):
     return result
 
 
+def fill_air(scene, air):
+    """The same medium outside of all objects and around the camera."""
+    scene["air"] = air
+    scene["sensor"]["medium"] = {"type": "ref", "id": "air"}
+    for name, item in scene.items():
+        if name.startswith("object"):
+            item["exterior"] = {"type": "ref", "id": "air"}
+
+
 def load(path, size=None):
     """The scene file at path, with another width and height if size is given."""
     with open(path, encoding="utf-8") as file:
         scene = yaml.safe_load(file)
     folder = os.path.dirname(path)
-    camera, image, around, materials, lights, objects = take(
-        scene, camera=None, image=None, background=0, materials={}, lights=None, objects=None)
+    camera, image, around, materials, lights, objects, air = take(
+        scene, camera=None, image=None, background=0, materials={}, lights=None, objects=None, air=None)
     width, height, _, depth, _ = take(image, width=640, height=480, samples=1, depth=6, integrator="path")
     result = {"type": "scene", "integrator": {"type": "path", "max_depth": depth + 2},
               "sensor": sensor(camera, *(size or (width, height)))}
@@ -241,5 +287,9 @@ def load(path, size=None):
     for i, item in enumerate(objects):
         ((kind, o),) = item.items()
         result["object%d" % i] = shape(kind, o, materials, folder)
+    if air:
+        fill_air(result, medium(dict(air)))
+    if air or any("interior" in s for s in result.values() if isinstance(s, dict)):
+        result["integrator"]["type"] = "volpath"
     choose_by_power([s for s in result.values() if "emitter" in s])
     return result
