@@ -12,10 +12,10 @@ typedef struct lr_swapchain {
     VkSwapchainKHR handle; /* null while the window has no area */
     VkImage images[LR_SWAPCHAIN_IMAGES];
     uint32_t image_count;
-    uint32_t width, height; /* in pixels; of pictures that are shown */
+    uint32_t width, height;             /* in pixels; of pictures that are shown */
     uint32_t asked_width, asked_height; /* of lr_swapchain_fit */
-    bool blue_first;        /* a pixel's bytes are blue, green, red, unused; else red comes first */
-    bool stale;             /* it no longer suits its window */
+    bool blue_first; /* a pixel's bytes are blue, green, red, unused; else red comes first */
+    bool stale;      /* it no longer suits its window */
     VkFence acquired;
 } lr_swapchain;
 

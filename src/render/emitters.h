@@ -7,7 +7,7 @@
 #include "render/pack_internal.h"
 
 typedef struct lr_emitter {
-    struct gpu_emitter record; /* but for the probabilities */
+    struct gpu_emitter record;  /* but for the probabilities */
     struct gpu_emitter_map map; /* of the picture of its light, if `mapped` */
     bool mapped;
     double area; /* square metres; 0 of a light */

@@ -6,8 +6,9 @@
 #include "render/sums.h"
 
 #define LR_NOISE_BLOCK 16u /* pixels along a block's side */
-#define LR_NOISE_FIRST 16u /* samples at the first decision; the others are at the double of one   \
-                            */
+#define LR_NOISE_FIRST                                                                             \
+    16u /* samples at the first decision; the others are at the double of one                      \
+         */
 
 typedef struct lr_noise {
     uint32_t width, height, across, down;

@@ -114,8 +114,8 @@ bool lr_import_has_numbers(const struct aiMaterial *from, const char *key, unsig
  * that neither it nor a map shows. */
 lr_status lr_import_texture(lr_import *import, const struct aiMaterial *from,
                             lr_material *material);
-/* The texture of assimp's type, if there is one that can be shown, as a map like `map`; `what` stands
- * for it in notes. */
+/* The texture of assimp's type, if there is one that can be shown, as a map like `map`; `what`
+ * stands for it in notes. */
 lr_status lr_import_map(lr_import *import, const struct aiMaterial *from, unsigned type,
                         const char *what, lr_map_kind kind, lr_map map, lr_material *material);
 /* Whether some texel of the texture is not grey. */

@@ -338,6 +338,7 @@ static const lr_field material_fields[] = {
     MAP("metallic_map", LR_MAP_METALLIC, "A picture that multiplies `metallic`."),
     MAP("emission_map", LR_MAP_EMISSION, "A picture that multiplies `emission`, which is 1 then."),
 };
+static_assert(COUNT(material_fields) <= LR_FIELDS_MAX, "lr_given has room for all keys");
 const lr_record lr_material_record =
     RECORD("material", "How a surface and its inside look.", material_fields, 0);
 

@@ -56,7 +56,7 @@ typedef struct lr_field {
     const char *const *choices; /* ends with NULL */
 } lr_field;
 
-#define LR_FIELDS_MAX 40
+#define LR_FIELDS_MAX 64
 
 struct lr_record {
     const char *name; /* as messages call it */
@@ -67,7 +67,8 @@ struct lr_record {
                           lr_background_kind */
 };
 
-/* What the records of objects, lights, patterns, maps and backgrounds are read into before they are completed. */
+/* What the records of objects, lights, patterns, maps and backgrounds are read into before they are
+ * completed. */
 typedef struct lr_object_draft {
     lr_object object;
     lr_vec3 translate, scale;
@@ -110,12 +111,14 @@ typedef struct lr_scene_draft {
     double version;
 } lr_scene_draft;
 
-extern const lr_record lr_scene_record, lr_camera_record, lr_image_record, lr_fog_record, lr_air_record,
-    lr_material_record, lr_rotation_record, lr_group_record;
+extern const lr_record lr_scene_record, lr_camera_record, lr_image_record, lr_fog_record,
+    lr_air_record, lr_material_record, lr_rotation_record, lr_group_record;
 /* Of maps: the same order as lr_map_kind, which is also that of these keys of a material. */
 extern const lr_record lr_map_records[LR_MAP_COUNT];
-extern const lr_record lr_background_records[], lr_pattern_records[], lr_light_records[], lr_object_records[];
-extern const uint32_t lr_background_record_count, lr_pattern_record_count, lr_light_record_count, lr_object_record_count;
+extern const lr_record lr_background_records[], lr_pattern_records[], lr_light_records[],
+    lr_object_records[];
+extern const uint32_t lr_background_record_count, lr_pattern_record_count, lr_light_record_count,
+    lr_object_record_count;
 
 /* All records in the order of the documentation, NULL behind the last. */
 const lr_record *lr_record_at(uint32_t index);

@@ -8,8 +8,8 @@
 const lr_record *lr_record_at(uint32_t index)
 {
     static const lr_record *const singles[] = {
-        &lr_scene_record,    &lr_camera_record,   &lr_image_record, &lr_fog_record, &lr_air_record,
-        &lr_material_record, &lr_rotation_record, &lr_group_record,
+        &lr_scene_record, &lr_camera_record,   &lr_image_record,    &lr_fog_record,
+        &lr_air_record,   &lr_material_record, &lr_rotation_record, &lr_group_record,
     };
     const uint32_t single_count = sizeof singles / sizeof singles[0];
     if (index < single_count)

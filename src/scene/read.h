@@ -40,11 +40,11 @@ typedef struct lr_mixes {
 typedef struct lr_reader {
     lr_report *report;
     lr_scene *scene;
-    lr_scene_builder builder;  /* of that scene */
-    lr_load_options options;   /* for the files that the text names */
-    lr_mesh_files files;       /* read so far */
-    locale_t locale;           /* "C", whatever the program chose */
-    lr_names materials;        /* names to indices of scene->materials */
+    lr_scene_builder builder; /* of that scene */
+    lr_load_options options;  /* for the files that the text names */
+    lr_mesh_files files;      /* read so far */
+    locale_t locale;          /* "C", whatever the program chose */
+    lr_names materials;       /* names to indices of scene->materials */
     lr_mixes mixes;
     uint32_t default_material; /* UINT32_MAX until an object needs it */
     uint32_t nesting;          /* of groups */

@@ -15,7 +15,7 @@ typedef lr_vec3 lr_color; /* x, y, z are red, green, blue; finite, >= 0 and <= L
 #define LR_OBJECTS_MAX 100000  /* written in a scene text */
 #define LR_LIGHTS_MAX 256
 #define LR_MATERIALS_MAX 65535
-#define LR_NONE UINT32_MAX /* instead of an index */
+#define LR_NONE UINT32_MAX   /* instead of an index */
 #define LR_MIX_NESTING_MAX 4 /* a mix of mixes of mixes of mixes */
 
 /* How a texture goes on beyond 0..1. */
@@ -154,7 +154,7 @@ typedef struct lr_material {
     lr_color sheen;                                                /* pbr: 0..1 */
     double sheen_roughness;
     lr_map maps[LR_MAP_COUNT]; /* as lr_map_kind */
-    bool pane; /* what it lets through goes straight on: it bounds no medium */
+    bool pane;                 /* what it lets through goes straight on: it bounds no medium */
     struct {
         uint32_t first, second; /* materials without emission, holes and sides of their own */
         lr_pattern weight;      /* share of the second: luminance, of which 1 counts at most */
@@ -305,8 +305,8 @@ struct lr_scene {
     lr_background background;
     lr_vec3 background_up; /* unit */
     lr_color fog_color;
-    double fog_density; /* per metre; 0: no fog */
-    struct {            /* outside of all media, only for paths; all 0: nothing */
+    double fog_density;                  /* per metre; 0: no fog */
+    struct {                             /* outside of all media, only for paths; all 0: nothing */
         lr_color absorption, scattering; /* per metre */
         double anisotropy;               /* as lr_material has it */
     } air;
