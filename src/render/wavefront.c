@@ -5,6 +5,9 @@
 
 #include "gpu/commands.h"
 
+/* Workgroups that any device takes along one axis; camera.comp has a sample in each. */
+#define LAYERS_MAX 65535
+
 /* Shades the hits of a pass: in several dispatches when there are many lights. */
 static void record_shade(lr_wavefront *w, struct gpu_work *work)
 {
@@ -397,6 +400,7 @@ lr_status lr_wavefront_render(lr_wavefront *wavefront, const lr_tile *tile, lr_p
     uint32_t pixels = tile->width * tile->height, samples = tile->samples;
     lr_status status = lr_wavefront_clear(w, pixels, error);
     uint32_t at_once = w->loops ? samples : at_least(w->chunk_rays / pixels, 1);
+    at_once = at_most(at_once, LAYERS_MAX);
     for (uint32_t sample = 0; sample < samples && !status; sample += at_once) {
         lr_camera_rays rays = {
             .x = tile->x,
