@@ -22,7 +22,6 @@ layout(std430, set = 0, binding = 1) writeonly buffer OutBlock { uint found[]; }
 
 void main()
 {
-    load_uniforms();
     uint i = gl_GlobalInvocationID.x, kind = given[i].origin.w;
     vec3 o = uintBitsToFloat(given[i].origin.xyz), d = uintBitsToFloat(given[i].direction.xyz);
     vec4 a = uintBitsToFloat(given[i].rows[0]), b = uintBitsToFloat(given[i].rows[1]);

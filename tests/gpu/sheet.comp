@@ -30,7 +30,7 @@ vec2 textbook_sphere(vec3 o, vec3 d, vec3 center, float radius)
 
 void main()
 {
-    load_uniforms();
+    work = work_block;
     uint i = gl_GlobalInvocationID.x, which = work.tile_x;
     uvec4 bits = given[3u * i];
     uint rank = given[3u * i + 1u].x;

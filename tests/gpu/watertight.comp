@@ -54,7 +54,6 @@ float unit(inout uint state)
 
 void main()
 {
-    load_uniforms();
     uint which = gl_WorkGroupID.x, state = gl_GlobalInvocationID.x * 9781u + 5u;
     vec3 from = edges[which].from.xyz, to = edges[which].to.xyz, center = edges[which].center.xyz;
     float reach = edges[which].to.w;
