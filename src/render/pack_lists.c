@@ -11,7 +11,7 @@
 /* Up to so many bounded primitives, and no mesh, every ray tests the balls of all of them. */
 #define UNSORTED_MAX 32
 
-#define CANDIDATE_COST 2.5
+#define CANDIDATE_COST 24
 #define LEAF_SIZE 2
 #define TESTS_IN_TREES 48
 
@@ -201,7 +201,8 @@ static bool pack_balls(const lr_primitive *primitives, const uint32_t *sorted,
 
 /* Whether rays do better to test all bounded primitives than to look for those whose balls they
  * meet first. A ray meets a ball of radius r in a scene of radius R with a probability of about
- * r^2 / R^2; a test that is looked for costs as much as CANDIDATE_COST of the others. */
+ * r^2 / R^2; a test that is looked for costs as much as CANDIDATE_COST of the others, measured on
+ * scenes of 8 to 33 balls, boxes and rectangles of many sizes. */
 static bool are_few(const lr_primitive *primitives, const uint32_t *sorted, uint32_t count)
 {
     double center[3] = {0}, radius2 = 0, met = 0;

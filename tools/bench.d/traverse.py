@@ -3,6 +3,7 @@ takes until it is on the device; and how a frame's time grows with triangles and
 
 import json
 import os
+import statistics
 import subprocess
 import tempfile
 
@@ -20,6 +21,10 @@ lights:
 objects:
   - mesh: {file: hills.ply}
 """
+PATHS = """image: {width: 512, height: 512, samples: 8, depth: 6, integrator: path}
+background: {gradient: [[0.4, 0.5, 0.7], [1, 1, 1]]}
+materials: {matt: {model: diffuse, color: 0.7}}
+""" + SCENE.replace("hills.ply", "hills.ply, material: matt")
 
 
 def build():
@@ -33,6 +38,19 @@ def write_hills(side, work):
     return path
 
 
+def measure_paths(work, count):
+    """Rays of bounces, and with the light that these ask for, per CPU second of a path-traced frame."""
+    write_text(os.path.join(work, "paths.yaml"), PATHS)
+    rates = []
+    for _ in range(count):
+        run([LAVARAY, "render", "paths.yaml", "-q", "-o", "a.ppm", "--stats", "stats.json"], folder=work)
+        stats = read_stats(os.path.join(work, "stats.json"))
+        rays, seconds = stats["rays"], 1e6 * stats["cpu_seconds"]["trace"]
+        bounced, asked = rays["bounced"]["traced"], rays["shadow"]["traced"]
+        rates.append((bounced / seconds, (bounced + asked) / seconds))
+    return dict(zip(("bounced", "bounced_and_shadow"), map(statistics.median, zip(*rates))))
+
+
 def measure(count):
     build()
     result = {"machine": machine()}
@@ -40,7 +58,7 @@ def measure(count):
         with tempfile.TemporaryDirectory() as work:
             command = [PROGRAM, "measure", str(side), write_hills(side, work), str(count)]
             told = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-        result[name] = json.loads(told)
+            result[name] = dict(json.loads(told), paths=measure_paths(work, count))
     return result
 
 
@@ -69,6 +87,13 @@ def markdown(result):
         lines.append("| %s | %.2f | %.2f | %.2f | %.0f | %.0f MB |" % (
             (size,) + tuple(costs[step]["cpu_seconds"] for step in ("load", "build", "upload")) +
             (costs["device_bytes_per_triangle"], 1e-6 * costs["peak_bytes"])))
+    lines += ["", "| Mray per CPU second | traversal alone, bounce | paths, bounced | | paths, bounced and "
+              "towards lights | |", "|---|---|---|---|---|---|"]
+    for size in ("70k", "1M"):
+        alone, paths = result[size]["bounce"]["lavaray_packets"]["mrays_per_cpu_second"], result[size]["paths"]
+        lines.append("| %s triangles | %.2f | %.2f | %s | %.2f | %s |" % (
+            size, alone, paths["bounced"], percent(paths["bounced"], alone),
+            paths["bounced_and_shadow"], percent(paths["bounced_and_shadow"], alone)))
     return "\n".join(lines)
 
 
