@@ -33,8 +33,8 @@
 #define CELLS_SIZE (4ull * LR_CELLS * LR_SHADOW_LIGHTS)
 
 /* Whether paths stay in registers on software devices, where trees do not need queues: on lavapipe
- * a bounce through queues takes twice as long (docs/performance.md). Not on SwiftShader, whose
- * compiler takes gigabytes and minutes for that kernel. */
+ * a bounce through queues takes longer by half at least (docs/performance.md). Not on SwiftShader,
+ * whose compiler takes gigabytes and minutes for that kernel. */
 #define LOOPS_ON_SOFTWARE 1
 
 /* RAYS of the kernels named packet. */

@@ -10,6 +10,7 @@ import array
 import json
 import math
 import os
+import re
 import statistics
 import subprocess
 import sys
@@ -60,7 +61,7 @@ def run_mitsuba(python, sampler):
     def run_one(spp, seed, path):
         told = subprocess.run([python, PEER, sampler, str(SIZE), path, str(spp), str(seed)], check=True,
                               capture_output=True, text=True).stdout
-        return float(told.split()[-1])
+        return float(re.sub(r"\x1b\[[0-9;]*m", "", told).split()[-1])  # Mitsuba may colour its lines
     return run_one
 
 
