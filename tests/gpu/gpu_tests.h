@@ -168,6 +168,31 @@ static inline void free_picture(picture *p)
     lr_picture_free(&p->image);
 }
 
+/* The mean of a channel over the whole picture. */
+static inline double mean_of(const picture *p, int channel)
+{
+    double sum = 0;
+    size_t count = (size_t)p->image.width * p->image.height;
+    for (size_t i = 0; i < count; i++)
+        sum += p->image.pixels[3 * i + (size_t)channel];
+    return sum / (double)count;
+}
+
+/* How far the sample lies from the value that does most. */
+static inline double worst_distance_from(const picture *p, double value)
+{
+    double worst = 0;
+    for (size_t i = 0; i < 3 * (size_t)p->image.width * p->image.height; i++)
+        worst = fmax(worst, fabs(p->image.pixels[i] - value));
+    return worst;
+}
+
+static inline bool same_pictures(const picture *a, const picture *b)
+{
+    size_t count = 3 * (size_t)a->image.width * a->image.height;
+    return memcmp(a->image.pixels, b->image.pixels, count * sizeof(float)) == 0;
+}
+
 /* Parses the text, which must be a scene, and renders it with options (may be NULL). */
 static inline picture render_text(lr_device *device, const char *text,
                                   const lr_render_options *options)

@@ -51,21 +51,6 @@ static picture render_here(lr_device *device, const char *text, const lr_render_
     return result;
 }
 
-static double mean_of(const picture *p, int channel)
-{
-    double sum = 0;
-    size_t count = (size_t)p->image.width * p->image.height;
-    for (size_t i = 0; i < count; i++)
-        sum += p->image.pixels[3 * i + (size_t)channel];
-    return sum / (double)count;
-}
-
-static bool same_pictures(const picture *a, const picture *b)
-{
-    size_t values = 3 * (size_t)a->image.width * a->image.height;
-    return memcmp(a->image.pixels, b->image.pixels, values * sizeof(float)) == 0;
-}
-
 /* ---- Normals ------------------------------------------------------------------------------- */
 
 static uint8_t constant[3];

@@ -23,22 +23,6 @@ static picture render_ball(lr_device *device, const char *materials, const char 
     return render_text(device, scene, NULL);
 }
 
-static double mean_of(const picture *p, int channel)
-{
-    double sum = 0;
-    size_t count = (size_t)p->image.width * p->image.height;
-    for (size_t i = 0; i < count; i++)
-        sum += p->image.pixels[3 * i + channel];
-    return sum / (double)count;
-}
-
-static void assert_same_picture(const picture *a, const picture *b, const char *what)
-{
-    size_t count = 3 * (size_t)a->image.width * a->image.height;
-    if (memcmp(a->image.pixels, b->image.pixels, count * sizeof(float)) != 0)
-        fail_msg("%s: the pictures differ", what);
-}
-
 static const char *const parts[][2] = {
     {"{color: [0.8, 0.2, 0.1]}", "{model: conductor, metal: gold, roughness: 0.4}"},
     {"{model: pbr, color: [0.2, 0.4, 0.9], roughness: 0.3, clearcoat: 1}",
@@ -83,7 +67,8 @@ static void test_nothing_to_choose(void **state)
                      parts[i][0], parts[i][1]);
             picture mixed = render_ball(*state, materials, "m", 4, 16);
             picture alone = render_ball(*state, materials, second ? "b" : "a", 4, 16);
-            assert_same_picture(&mixed, &alone, parts[i][second]);
+            if (!same_pictures(&mixed, &alone))
+                fail_msg("%s: the pictures differ", parts[i][second]);
             free_picture(&mixed);
             free_picture(&alone);
         }
@@ -108,7 +93,8 @@ static void test_patterns(void **state)
                  weight, color);
         picture mixed = render_ball(*state, materials, "m", 2, 16);
         picture colored = render_ball(*state, materials, "c", 2, 16);
-        assert_same_picture(&mixed, &colored, patterns[i]);
+        if (!same_pictures(&mixed, &colored))
+            fail_msg("%s: the pictures differ", patterns[i]);
         free_picture(&mixed);
         free_picture(&colored);
     }
@@ -192,9 +178,7 @@ static void test_white_furnace(void **state)
                  "background: 1\nlights: []\nobjects:\n  - sphere: {material: %s}\n",
                  cases[i].material);
         picture p = render_text(*state, scene, NULL);
-        double worst = 0;
-        for (size_t k = 0; k < 3 * 32 * 32; k++)
-            worst = fmax(worst, fabs(p.image.pixels[k] - 1));
+        double worst = worst_distance_from(&p, 1);
         if (!(worst <= cases[i].tolerance))
             fail_msg("%s: off by %g", cases[i].material, worst);
         free_picture(&p);

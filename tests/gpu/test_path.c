@@ -1,24 +1,6 @@
 /* Paths in scenes whose light is known without tracing any. */
 #include "gpu_tests.h"
 
-/* The mean of a channel over the whole picture. */
-static double mean_of(const picture *p, int channel)
-{
-    double sum = 0;
-    size_t count = (size_t)p->image.width * p->image.height;
-    for (size_t i = 0; i < count; i++)
-        sum += p->image.pixels[3 * i + channel];
-    return sum / (double)count;
-}
-
-static double worst_distance_from(const picture *p, double value)
-{
-    double worst = 0;
-    for (size_t i = 0; i < 3 * (size_t)p->image.width * p->image.height; i++)
-        worst = fmax(worst, fabs(p->image.pixels[i] - value));
-    return worst;
-}
-
 /* Point, spot and directional lights on matt surfaces are the ray tracer's, whatever the falloff.
  */
 static void test_direct_light_is_the_ray_tracers(void **state)

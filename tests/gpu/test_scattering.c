@@ -1,15 +1,6 @@
 /* Media that scatter light, where the light is known without tracing. */
 #include "gpu_tests.h"
 
-static double mean_of(const picture *p, int channel)
-{
-    double sum = 0;
-    size_t count = (size_t)p->image.width * p->image.height;
-    for (size_t i = 0; i < count; i++)
-        sum += p->image.pixels[3 * i + channel];
-    return sum / (double)count;
-}
-
 /* One pixel down the middle: `scene` after the camera and the picture's settings. */
 static rgb through_the_middle(lr_device *device, int samples, int depth, const char *scene)
 {
