@@ -54,9 +54,7 @@ void store_ray(uint index, gpu_ray ray)
     rays_out[at] = pack_row(ray.origin, ray.pixel);
     rays_out[at + 1u] = pack_row(ray.direction, ray.state);
     uint note = 0u;
-    if (explains)
-        note = ray.note;
-    if (has_inspect || has_paths)
+    if (explains || has_inspect || has_paths)
         note = ray.note;
     rays_out[at + 2u] = pack_row(ray.weight, note);
     if (has_media)

@@ -222,6 +222,25 @@ static bool are_few(const lr_primitive *primitives, const uint32_t *sorted, uint
     return met * CANDIDATE_COST >= count;
 }
 
+/* LR_SPEC_FEW: whether paths test all primitives, and how many there are of each kind. */
+static void note_few(const lr_primitive *primitives, const uint32_t *sorted,
+                     lr_packed_scene *packed)
+{
+    const struct gpu_frame *f = &packed->frame;
+    uint32_t *use = packed->constants;
+    uint32_t planes = f->planes.end - f->planes.begin, spheres = f->spheres.end - f->spheres.begin;
+    uint32_t flats = f->flats.end - f->flats.begin, solids = f->solids.end - f->solids.begin;
+    if (!use[LR_SPEC_PATH] || use[LR_SPEC_TRANSPARENT] || planes > LR_FEW_PLANES ||
+        spheres > LR_FEW_SPHERES || flats > LR_FEW_FLATS || solids > LR_FEW_SOLIDS ||
+        !are_few(primitives, sorted, f->bounded))
+        return;
+    use[LR_SPEC_FEW] = 1;
+    use[LR_SPEC_FEW_PLANES] = planes;
+    use[LR_SPEC_FEW_SPHERES] = spheres;
+    use[LR_SPEC_FEW_FLATS] = flats;
+    use[LR_SPEC_FEW_SOLIDS] = solids;
+}
+
 static lr_status pack_sorted(const lr_primitive *primitives, const uint32_t *sorted,
                              const uint32_t *counts, const lr_bvh **trees, lr_packed_scene *packed,
                              lr_error *error)
@@ -249,19 +268,7 @@ static lr_status pack_sorted(const lr_primitive *primitives, const uint32_t *sor
             fits = lists[kind]->nodes != UINT32_MAX;
         }
     if (fits && !packed->constants[LR_SPEC_TREES]) {
-        uint32_t *use = packed->constants;
-        use[LR_SPEC_FEW_PLANES] = frame->planes.end - frame->planes.begin;
-        use[LR_SPEC_FEW_SPHERES] = frame->spheres.end - frame->spheres.begin;
-        use[LR_SPEC_FEW_FLATS] = frame->flats.end - frame->flats.begin;
-        use[LR_SPEC_FEW_SOLIDS] = frame->solids.end - frame->solids.begin;
-        use[LR_SPEC_FEW] =
-            use[LR_SPEC_PATH] && !use[LR_SPEC_TRANSPARENT] &&
-            use[LR_SPEC_FEW_PLANES] <= LR_FEW_PLANES &&
-            use[LR_SPEC_FEW_SPHERES] <= LR_FEW_SPHERES && use[LR_SPEC_FEW_FLATS] <= LR_FEW_FLATS &&
-            use[LR_SPEC_FEW_SOLIDS] <= LR_FEW_SOLIDS && are_few(primitives, sorted, frame->bounded);
-        if (!use[LR_SPEC_FEW])
-            use[LR_SPEC_FEW_PLANES] = use[LR_SPEC_FEW_SPHERES] = use[LR_SPEC_FEW_FLATS] =
-                use[LR_SPEC_FEW_SOLIDS] = 0;
+        note_few(primitives, sorted, packed);
         fits = pack_balls(primitives, sorted, packed);
     }
     if (!fits)
