@@ -111,6 +111,7 @@ static int show(values *v, const char *path)
     }
     if (code == EXIT_FINE && interrupted()) {
         lr_scene_destroy(scene);
+        print_error("interrupted");
         code = EXIT_INTERRUPTED;
     } else if (code == EXIT_FINE) {
         lr_status status = lr_preview_run(scene, &files, &preview, &error);

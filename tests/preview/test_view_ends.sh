@@ -33,19 +33,29 @@ for keys in alt+F4 q; do
     [ "$took" -le "$limit" ] || problem "$keys took $took ms"
     [ ! -s "$work/err" ] || problem "$keys: $(cat "$work/err")"
 done
-# At any time of its start: no crash, no hang, no word but the one.
-for delay in 0.02 0.1 0.15 0.2 0.25 0.3 0.4 0.6; do
-    launch scenes/showcase.yaml --size 640x480
-    sleep $delay
+# At any time of its start, also while it reads a long scene: no crash, no hang, no word but the one.
+stopped_early() {
+    local code=0
+    launch "$1" --size 640x480
+    sleep "$2"
     kill -TERM "$view_process"
     await 20 has_ended
-    code=0
     wait "$view_process" 2>/dev/null || code=$?
     view_process=
     case "$code $(cat "$work/err")" in
     '130 lavaray: interrupted' | '143 ') ;;
-    *) problem "SIGTERM after $delay s: exit code $code, $(cat "$work/err")" ;;
+    *) problem "SIGTERM after $2 s of ${1##*/}: exit code $code, $(cat "$work/err")" ;;
     esac
+}
+for delay in 0.02 0.1 0.15 0.2 0.25 0.3 0.4 0.6; do
+    stopped_early scenes/showcase.yaml $delay
+done
+{
+    printf 'lavaray: 1\ncamera: {from: [0, 0, 9], to: [0, 0, 0], fov: 40}\nobjects:\n'
+    for ((i = 0; i < 30000; i++)); do echo "  - sphere: {center: [$i, 0, 0], radius: 0.4}"; done
+} >"$work/long.yaml"
+for delay in 0.05 0.1 0.15; do
+    stopped_early "$work/long.yaml" $delay
 done
 
 # The loader's thread is busy when it ends: with reading, and with making a session ready.
