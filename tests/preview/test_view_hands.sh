@@ -8,7 +8,8 @@ cp "$scene" "$work/before.yaml"
 view "$scene" --size 320x240 --spp 1 --screenshot "$work/shot.png"
 settle
 start=$camera
-window_picture "$work/start.ppm"
+"$LAVARAY" render -q "$scene" --size 320x240 --spp 1 -o "$work/start.ppm"
+shows_soon "$work/start.ppm" hands-start
 
 # field NAME: numbers of the printed camera.
 field() {
@@ -55,12 +56,12 @@ await 60 more ' focused' 0
 moves 'a double click' 'from to'
 back r
 # Its rays lie over the picture until Escape.
-window_picture "$work/plain.ppm"
+await 20 shows "$work/start.ppm"
 at 100 160 && xdotool click 1
-await 60 differs "$work/plain.ppm"
+await 60 differs "$work/start.ppm"
 keep hands-explained
 moves 'a single click' ''
-await 20 shows "$work/plain.ppm"
+await 20 shows "$work/start.ppm"
 at 200 170 && press f
 await 60 more ' focused' 1
 moves 'f' 'from to'
