@@ -3,9 +3,10 @@
 # what nothing needs, which drivers do far slower, and at every start.
 
 set(SPIRV_OPT_PASSES
-    --inline-entry-points-exhaustive --eliminate-dead-functions --scalar-replacement=0
-    --ssa-rewrite --ccp --simplify-instructions --eliminate-dead-branches --merge-blocks
-    --copy-propagate-arrays --redundancy-elimination --eliminate-dead-code-aggressive --compact-ids)
+    --inline-entry-points-exhaustive --eliminate-dead-functions --private-to-local
+    --scalar-replacement=0 --ssa-rewrite --ccp --simplify-instructions --eliminate-dead-branches
+    --merge-blocks --copy-propagate-arrays --reduce-load-size --redundancy-elimination
+    --eliminate-dead-code-aggressive --compact-ids)
 
 add_executable(embed_shader ${CMAKE_SOURCE_DIR}/tools/embed_shader.c
                ${CMAKE_SOURCE_DIR}/src/gpu/spirv.c ${CMAKE_SOURCE_DIR}/src/gpu/spirv_check.c

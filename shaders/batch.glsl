@@ -40,6 +40,11 @@ uint share(uint x, uint lane)
     return has_shuffle ? subgroupShuffle(x, lane) : x;
 }
 
+uvec3 share(uvec3 v, uint lane)
+{
+    return uvec3(share(v.x, lane), share(v.y, lane), share(v.z, lane));
+}
+
 vec3 share(vec3 v, uint lane)
 {
     return vec3(share(v.x, lane), share(v.y, lane), share(v.z, lane));
@@ -54,6 +59,24 @@ uint neighbour(uint x, uint distance)
 {
     uint lane = gl_SubgroupInvocationID;
     return subgroupShuffle(x, lane ^ distance);
+}
+
+// The value of the batch's invocation `distance` before this one, or behind it; where there is none, of
+// the batch's first or last.
+uint batch_before(uint x, uint distance)
+{
+    return subgroupShuffle(x, batch_begin() + max(batch_lane(), distance) - distance);
+}
+
+uint batch_behind(uint x, uint distance)
+{
+    return subgroupShuffle(x, batch_begin() + min(batch_lane() + distance, uint(LR_BATCH) - 1u));
+}
+
+uvec3 batch_behind(uvec3 v, uint distance)
+{
+    return uvec3(batch_behind(v.x, distance), batch_behind(v.y, distance),
+                 batch_behind(v.z, distance));
 }
 
 // The sum over the batch.
@@ -93,23 +116,64 @@ uint batch_sum_before(uint x)
     return before;
 }
 
-// Adds n of each invocation to a counter.
-#define COUNT(counter, n)                                                                          \
-    {                                                                                              \
-        uint batch_count = batch_sum(n);                                                           \
-        if (batch_lane() == 0u && batch_count != 0u)                                               \
-            atomicAdd(counter, batch_count);                                                       \
-    }
+// The number of the lowest bit set; of the highest one, of bits below 2^24. (GLSL's findLSB is of low
+// precision.)
+uint lowest_bit(uint bits)
+{
+    return ((floatBitsToUint(float(int(bits & (~bits + 1u)))) >> 23) & 255u) - 127u;
+}
 
-// Gives each invocation that wants one a slot of its own of those that `counter` counts.
-#define TAKE_SLOT(counter, want, slot)                                                             \
-    {                                                                                              \
-        uint taken = batch_sum(uint(want)), first_slot = 0u;                                       \
-        if (batch_lane() == 0u && taken != 0u)                                                     \
-            first_slot = atomicAdd(counter, taken);                                                \
-        if (has_shuffle)                                                                           \
-            first_slot = subgroupShuffle(first_slot, batch_begin());                               \
-        slot = first_slot + batch_sum_before(uint(want));                                          \
+uint highest_bit(uint bits)
+{
+    return (floatBitsToUint(float(int(bits))) >> 23) - 127u;
+}
+
+// What a kernel counts: each sum waits in an invocation of its own, until write_counts adds them all with
+// one atomic.
+uint count_of_lane = 0u, counter_of_lane = 0u, lanes_that_count = 0u;
+
+void write_counts()
+{
+    if (count_of_lane != 0u)
+        atomicAdd(counters[counter_of_lane], count_of_lane);
+    count_of_lane = 0u;
+    lanes_that_count = 0u;
+}
+
+// Adds n of each invocation to counter LR_COUNTER_*, when write_counts is called. Outside loops, so that
+// compilers know the lane.
+void add_count(uint counter, uint n)
+{
+    uint sum = batch_sum(n);
+    if (has_shuffle) {
+        if (lanes_that_count == uint(LR_BATCH))
+            write_counts();
+        bool mine = batch_lane() == lanes_that_count;
+        count_of_lane = mine ? sum : count_of_lane;
+        counter_of_lane = mine ? counter : counter_of_lane;
+        lanes_that_count++;
+    } else if (sum != 0u) {
+        atomicAdd(counters[counter], sum);
     }
+}
+
+// Slots of those that a counter counts, for each invocation that wants the first and for each that wants
+// the second.
+uvec2 take_slots(uint counter, bool first, bool second)
+{
+    uint wanted = uint(first) | uint(second) << 16;
+    uint taken = batch_sum(wanted), before = batch_sum_before(wanted);
+    uint firsts = taken & 0xFFFFu, all = firsts + (taken >> 16), begin = 0u;
+    if (batch_lane() == 0u && all != 0u)
+        begin = atomicAdd(counters[counter], all);
+    if (has_shuffle)
+        begin = subgroupShuffle(begin, batch_begin());
+    return uvec2(begin + (before & 0xFFFFu), begin + firsts + (before >> 16));
+}
+
+uint take_slot(uint counter, bool wanted)
+{
+    return take_slots(counter, wanted, false).x;
+}
 
 #endif

@@ -82,7 +82,7 @@ layout(std430, set = 0, binding = LR_BIND_SCENE_ROWS) readonly buffer SceneBlock
     uvec4 scene_rows[];
 };
 layout(std430, set = 0, binding = LR_BIND_FILM) buffer FilmBlock { uint film[]; };
-layout(std430, set = 0, binding = LR_BIND_COUNTERS) buffer CounterBlock { gpu_counters counters; };
+layout(std430, set = 0, binding = LR_BIND_COUNTERS) buffer CounterBlock { uint counters[]; }; // gpu_counters
 // Queues of gpu_ray and gpu_hit; see queue.glsl.
 layout(std430, set = 0, binding = LR_BIND_RAYS_IN) readonly buffer RaysInBlock { uvec4 rays_in[]; };
 layout(std430, set = 0, binding = LR_BIND_RAYS_OUT) buffer RaysOutBlock { uvec4 rays_out[]; };

@@ -17,7 +17,8 @@ void main()
     uint y_group = spread_group(gl_WorkGroupID.y, gl_NumWorkGroups.y);
     uvec2 at = uvec2(gl_GlobalInvocationID.x, y_group * uint(LR_TILE_GROUP) + gl_LocalInvocationID.y);
     bool wanted = at.x < work.tile_width && at.y < work.tile_height;
-    COUNT(counters.made, uint(wanted))
+    add_count(LR_COUNTER_MADE, uint(wanted));
+    write_counts();
     if (!wanted)
         return;
     uvec2 pixel = uvec2(work.tile_x, work.tile_y) + at * work.step;
@@ -32,12 +33,12 @@ void main()
         within = sample_pair(key, pair_pixel);
     camera_ray ray = sample_ray(pixel, within, key);
     uint in_film = work.film_first + at.y * work.step * work.film_pitch + at.x * work.step;
-    // Squares of 8 x 8 pixels one after the other, those at the tile's edges smaller, so that rays that
-    // are neighbours in the queue are so in the picture.
+    // Squares of 8 x 8 pixels one after the other, those at the tile's edges smaller, and all samples of a
+    // pixel together, so that rays that are neighbours in the queue are so in the picture.
     uvec2 corner = at & ~7u, size = min(uvec2(work.tile_width, work.tile_height) - corner, uvec2(8u));
     uvec2 inside = at - corner;
-    uint slot = gl_WorkGroupID.z * (work.tile_width * work.tile_height) + corner.y * work.tile_width +
-                corner.x * size.y + inside.y * size.x + inside.x;
+    uint place = corner.y * work.tile_width + corner.x * size.y + inside.y * size.x + inside.x;
+    uint slot = place * gl_NumWorkGroups.z + gl_WorkGroupID.z;
     atomicAdd(film[in_film * uint(LR_FILM_WORDS) + uint(LR_FILM_SAMPLES)], 1u);
     store_ray(slot, gpu_ray(ray.origin, in_film, ray.direction,
                             LR_KIND_PRIMARY << LR_STATE_KIND_SHIFT, vec3(1.0), 0u, frame.inside0,

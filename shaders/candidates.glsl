@@ -57,10 +57,4 @@ uint bits_of(gpu_list list, uint first)
     return bits_below(end) & ~bits_below(begin);
 }
 
-// The number of the lowest bit set. (GLSL's findLSB is of low precision.)
-uint lowest_bit(uint bits)
-{
-    return ((floatBitsToUint(float(int(bits & (~bits + 1u)))) >> 23) & 255u) - 127u;
-}
-
 #endif

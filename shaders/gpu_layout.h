@@ -10,6 +10,7 @@
 
 #ifdef __STDC__
 #include <assert.h>
+#include <stddef.h>
 #include <stdint.h>
 typedef uint32_t uint;
 typedef struct vec3 {
@@ -19,8 +20,11 @@ typedef struct vec4 {
     float x, y, z, w;
 } vec4;
 #define LR_ROWS(type, rows) static_assert(sizeof(struct type) == 16 * (rows), #type);
+#define LR_WORD(type, member, word)                                                                \
+    static_assert(offsetof(struct type, member) == 4 * (word), #type "." #member);
 #else
 #define LR_ROWS(type, rows)
+#define LR_WORD(type, member, word)
 #endif
 
 /* ---- Bindings of the one descriptor set, the same for all kernels ---- */
@@ -799,6 +803,52 @@ struct gpu_counters {
     uint unused0;
 };
 LR_ROWS(gpu_counters, 7)
+
+/* The numbers of the words that kernels count in. */
+#define LR_COUNTER_HIT_GROUPS 0u
+#define LR_COUNTER_HITS 3u
+#define LR_COUNTER_RAYS 4u
+#define LR_COUNTER_TRACED 5u
+#define LR_COUNTER_SHADED 6u
+#define LR_COUNTER_REFLECTED 7u
+#define LR_COUNTER_REFRACTED 8u
+#define LR_COUNTER_PASSED 9u
+#define LR_COUNTER_REFLECTED_HITS 10u
+#define LR_COUNTER_REFRACTED_HITS 11u
+#define LR_COUNTER_SHADOW 12u
+#define LR_COUNTER_SHADOW_HITS 13u
+#define LR_COUNTER_DROPPED_DEPTH 14u
+#define LR_COUNTER_DROPPED_WEIGHT 15u
+#define LR_COUNTER_DROPPED_NESTING 16u
+#define LR_COUNTER_NON_FINITE 17u
+#define LR_COUNTER_SATURATED 18u
+#define LR_COUNTER_MADE 19u
+#define LR_COUNTER_SHADOW_RAYS 20u
+#define LR_COUNTER_FOUND 24u
+#define LR_COUNTER_UNFINISHED 25u
+#define LR_COUNTER_MADE_HITS 26u
+LR_WORD(gpu_counters, hit_groups, LR_COUNTER_HIT_GROUPS)
+LR_WORD(gpu_counters, hits, LR_COUNTER_HITS)
+LR_WORD(gpu_counters, rays, LR_COUNTER_RAYS)
+LR_WORD(gpu_counters, traced, LR_COUNTER_TRACED)
+LR_WORD(gpu_counters, shaded, LR_COUNTER_SHADED)
+LR_WORD(gpu_counters, reflected, LR_COUNTER_REFLECTED)
+LR_WORD(gpu_counters, refracted, LR_COUNTER_REFRACTED)
+LR_WORD(gpu_counters, passed, LR_COUNTER_PASSED)
+LR_WORD(gpu_counters, reflected_hits, LR_COUNTER_REFLECTED_HITS)
+LR_WORD(gpu_counters, refracted_hits, LR_COUNTER_REFRACTED_HITS)
+LR_WORD(gpu_counters, shadow, LR_COUNTER_SHADOW)
+LR_WORD(gpu_counters, shadow_hits, LR_COUNTER_SHADOW_HITS)
+LR_WORD(gpu_counters, dropped_depth, LR_COUNTER_DROPPED_DEPTH)
+LR_WORD(gpu_counters, dropped_weight, LR_COUNTER_DROPPED_WEIGHT)
+LR_WORD(gpu_counters, dropped_nesting, LR_COUNTER_DROPPED_NESTING)
+LR_WORD(gpu_counters, non_finite, LR_COUNTER_NON_FINITE)
+LR_WORD(gpu_counters, saturated, LR_COUNTER_SATURATED)
+LR_WORD(gpu_counters, made, LR_COUNTER_MADE)
+LR_WORD(gpu_counters, shadow_rays, LR_COUNTER_SHADOW_RAYS)
+LR_WORD(gpu_counters, found, LR_COUNTER_FOUND)
+LR_WORD(gpu_counters, unfinished, LR_COUNTER_UNFINISHED)
+LR_WORD(gpu_counters, made_hits, LR_COUNTER_MADE_HITS)
 
 /* ---- The window: display.comp ---- */
 #define LR_SHADES 256    /* of a channel */

@@ -82,15 +82,16 @@ void main()
             slab_ready(k, frame.reach);
     }
     visit_scene();
-    uint count = 0u;
-    EACH_RAY count += uint(packet_index(k) < work.count);
+    uint done = 0u;
+    EACH_RAY done += uint(packet_index(k) < work.count);
     if (joint) {
-        COUNT(counters.found, count)
-    } else if (count != 0u) {
-        atomicAdd(counters.found, count);
+        add_count(LR_COUNTER_FOUND, done);
+        write_counts();
+    } else if (done != 0u) {
+        atomicAdd(counters[LR_COUNTER_FOUND], done);
     }
     if (!finished)
-        atomicAdd(counters.unfinished, 1u);
+        atomicAdd(counters[LR_COUNTER_UNFINISHED], 1u);
     // Last, because on a CPU an atomic waits for all stores before it.
     EACH_RAY
     {

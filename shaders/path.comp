@@ -26,14 +26,14 @@ void main()
     film_sum sum = film_zero();
     ray_counts counts = ray_counts(0u, 0u, 0u, 0u);
     bool goes_on = bounce(wanted, met, ray, path, sum, counts);
-    film_add(ray.pixel, sum);
+    film_add_batch(ray.pixel, sum);
     // The stores come last: on a CPU an atomic waits for all stores before it.
-    uint slot;
-    TAKE_SLOT(counters.rays, goes_on, slot)
-    COUNT(counters.traced, counts.traced)
-    COUNT(counters.hits, counts.hits)
-    COUNT(counters.shadow, counts.shadow)
-    COUNT(counters.shadow_hits, counts.shadow_hits)
+    uint slot = take_slot(LR_COUNTER_RAYS, goes_on);
+    add_count(LR_COUNTER_TRACED, counts.traced);
+    add_count(LR_COUNTER_HITS, counts.hits);
+    add_count(LR_COUNTER_SHADOW, counts.shadow);
+    add_count(LR_COUNTER_SHADOW_HITS, counts.shadow_hits);
+    write_counts();
     if (goes_on) {
         store_ray(slot, ray);
         store_path(slot, path);

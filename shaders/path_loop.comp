@@ -60,13 +60,14 @@ void main()
         film_add(in_film, sum);
         atomicAdd(film[in_film * uint(LR_FILM_WORDS) + uint(LR_FILM_SAMPLES)], ended);
     }
-    COUNT(counters.rays, uint(goes_on))
-    COUNT(counters.made, begun - begun_before)
-    COUNT(counters.made_hits, first_hits)
-    COUNT(counters.traced, counts.traced)
-    COUNT(counters.hits, counts.hits)
-    COUNT(counters.shadow, counts.shadow)
-    COUNT(counters.shadow_hits, counts.shadow_hits)
+    add_count(LR_COUNTER_RAYS, uint(goes_on));
+    add_count(LR_COUNTER_MADE, begun - begun_before);
+    add_count(LR_COUNTER_MADE_HITS, first_hits);
+    add_count(LR_COUNTER_TRACED, counts.traced);
+    add_count(LR_COUNTER_HITS, counts.hits);
+    add_count(LR_COUNTER_SHADOW, counts.shadow);
+    add_count(LR_COUNTER_SHADOW_HITS, counts.shadow_hits);
+    write_counts();
     if (inside) {
         ray.note = begun << 1 | uint(alive);
         store_ray(slot, ray);

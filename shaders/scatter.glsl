@@ -24,18 +24,20 @@ float greatest(vec3 v)
     return max(v.x, max(v.y, v.z));
 }
 
-// Whether a child is worth a ray; counts the ones that are cut off. `fate` is what becomes of it, in
-// kernels that explain.
-bool admit(child c, uint depth, inout uint fate)
+// Children that are not traced, by the reason.
+struct dropped_counts {
+    uint deep, weak, nested;
+};
+
+// Whether a child is worth a ray. `fate` is what becomes of it, in kernels that explain.
+bool admit(child c, uint depth, inout dropped_counts dropped, inout uint fate)
 {
     float weight = greatest(c.weight);
     bool counts = !(weight < LR_WEIGHT_MIN);
     bool too_deep = counts && depth >= frame.depth;
     bool too_weak = counts && !too_deep && weight < frame.min_weight;
-    if (too_deep)
-        atomicAdd(counters.dropped_depth, 1u);
-    if (too_weak)
-        atomicAdd(counters.dropped_weight, 1u);
+    dropped.deep += uint(too_deep);
+    dropped.weak += uint(too_weak);
     if (explains)
         fate = mix(mix(mix(LR_FATE_TRACED, LR_FATE_TOO_WEAK, too_weak), LR_FATE_TOO_DEEP, too_deep),
                    LR_FATE_NONE, !counts);
@@ -56,19 +58,24 @@ void emit(uint slot, child c, uint pixel, surface s, vec3 n)
                             c.state, c.weight, noted_ray, c.media.x, c.media.y, c.media.z, c.media.w));
 }
 
-// Emits the children of `ray`, which met `s` with `weight`; n is the surface's normal against the ray,
-// lit_by the one that it is lit and mirrors by. Returns false when the surface is absent there or
-// hidden within another medium, and so nothing to be lit.
-bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids, gpu_material m,
-             bool absent, bool wanted)
+struct children {
+    child mirrored, through;
+    bool has_mirrored, has_through;
+    bool hidden; // the surface is absent there or hidden within another medium: nothing to be lit
+    dropped_counts dropped;
+};
+
+// The children of `ray`, which met `s` with `weight`; n is the surface's normal against the ray, lit_by
+// the one that it is lit and mirrors by.
+children scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids, gpu_material m,
+                 bool absent, bool wanted)
 {
     float c1 = min(max(-ex_dot(ray.direction, lit_by), 0.0), 1.0);
     uint depth = ray.state & LR_STATE_DEPTH;
     boundary b = boundary_at(ray, s, ids, m.ior, absent);
     bool hidden = b.hidden, solid = b.solid, lost = !b.placed;
     float ior1 = b.ior1, ior2 = b.ior2, gamma = b.gamma;
-    if (wanted && lost)
-        atomicAdd(counters.dropped_nesting, 1u);
+    dropped_counts dropped = dropped_counts(0u, 0u, uint(wanted && lost));
 
     vec3 reflect_weight = weight * m.reflect;
     vec3 transmit_weight = weight * m.transmit;
@@ -102,8 +109,8 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids
     child through = child(transmit_weight, refracted, -1.0, b.beyond,
                           next | (LR_KIND_REFRACTED << LR_STATE_KIND_SHIFT));
     uint mirrored_fate = LR_FATE_NONE, through_fate = LR_FATE_NONE;
-    bool emit_mirrored = wanted && !hidden && admit(mirrored, depth, mirrored_fate);
-    bool emit_through = wanted && !hidden && !total && admit(through, depth, through_fate);
+    bool emit_mirrored = wanted && !hidden && admit(mirrored, depth, dropped, mirrored_fate);
+    bool emit_through = wanted && !hidden && !total && admit(through, depth, dropped, through_fate);
     if (wanted && hidden) {
         // The surface lies inside a medium that fills the space on both sides, or has a hole: as if
         // it were not there. The ray goes on as the same ray.
@@ -113,10 +120,7 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids
                         depth | (on_kind << LR_STATE_KIND_SHIFT) |
                             ((passes + 1u) << LR_STATE_PASSES_SHIFT));
         emit_through = passes < uint(LR_PASSES_MAX);
-        if (emit_through)
-            atomicAdd(counters.passed, 1u);
-        else
-            atomicAdd(counters.dropped_nesting, 1u);
+        dropped.nested += uint(!emit_through);
     }
 
     if (explains && wanted) {
@@ -130,17 +134,28 @@ bool scatter(gpu_ray ray, vec3 weight, surface s, vec3 n, vec3 lit_by, uvec3 ids
                           through_fate << LR_NOTE_REFRACTED_SHIFT);
     }
 
-    // The stores come last: on a CPU an atomic waits for all stores before it.
-    uint mirrored_slot, through_slot;
-    TAKE_SLOT(counters.rays, emit_mirrored, mirrored_slot)
-    TAKE_SLOT(counters.rays, emit_through, through_slot)
-    COUNT(counters.reflected, uint(emit_mirrored))
-    COUNT(counters.refracted, uint(emit_through && !hidden))
-    if (emit_mirrored)
-        emit(mirrored_slot, mirrored, ray.pixel, s, n);
-    if (emit_through)
-        emit(through_slot, through, ray.pixel, s, n);
-    return !hidden;
+    return children(mirrored, through, emit_mirrored, emit_through, hidden, dropped);
+}
+
+void count_children(children c)
+{
+    add_count(LR_COUNTER_REFLECTED, uint(c.has_mirrored));
+    add_count(LR_COUNTER_REFRACTED, uint(c.has_through && !c.hidden));
+    add_count(LR_COUNTER_PASSED, uint(c.has_through && c.hidden));
+    add_count(LR_COUNTER_DROPPED_DEPTH, c.dropped.deep);
+    add_count(LR_COUNTER_DROPPED_WEIGHT, c.dropped.weak);
+    add_count(LR_COUNTER_DROPPED_NESTING, c.dropped.nested);
+}
+
+// Puts the children into the next queue. The last thing that a kernel does: on a CPU an atomic waits for
+// all stores before it.
+void emit_children(children c, uint pixel, surface s, vec3 n)
+{
+    uvec2 slots = take_slots(LR_COUNTER_RAYS, c.has_mirrored, c.has_through);
+    if (c.has_mirrored)
+        emit(slots.x, c.mirrored, pixel, s, n);
+    if (c.has_through)
+        emit(slots.y, c.through, pixel, s, n);
 }
 
 #endif

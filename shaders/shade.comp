@@ -49,9 +49,13 @@ bool is_lit(vec3 n, vec3 wi)
     return lit;
 }
 
+struct shadow_counts {
+    uint traced, hits;
+};
+
 // Adds the light of up to four sources from number `first`.
 void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m, surface s, vec3 n,
-                vec3 lit_by, vec3 wo, bool lit, inout film_sum sum)
+                vec3 lit_by, vec3 wo, bool lit, inout film_sum sum, inout shadow_counts counts)
 {
     vec3 origin = s.position + n * s.offset;
     shadow_rays rays = shadow_rays_none();
@@ -92,9 +96,8 @@ void add_lights(uint first, uint count, vec3 weight, vec3 color, gpu_material m,
     else
         trace_shadows(rays, origin, most);
     uvec4 met = rays.red | rays.green | rays.blue;
-    COUNT(counters.shadow, shadowed)
-    COUNT(counters.shadow_hits,
-          uint(met.x != 0u) + uint(met.y != 0u) + uint(met.z != 0u) + uint(met.w != 0u))
+    counts.traced += shadowed;
+    counts.hits += uint(met.x != 0u) + uint(met.y != 0u) + uint(met.z != 0u) + uint(met.w != 0u);
     for (uint i = 0u;;) {
         vec3 value = vec3(pick(red, i), pick(green, i), pick(blue, i));
         uvec3 depth = uvec3(pick(rays.red, i), pick(rays.green, i), pick(rays.blue, i));
@@ -151,7 +154,7 @@ void main()
 {
     load_uniforms();
     uint index = queue_index();
-    bool wanted = index < counters.hits;
+    bool wanted = index < counters[LR_COUNTER_HITS];
     gpu_hit hit = load_hit(wanted ? index : 0u);
     gpu_ray ray = load_ray(hit.ray);
     float chance = 0.0; // ray trees have no mixes
@@ -174,9 +177,10 @@ void main()
     }
     if (has_inspect)
         noted_ray = floatBitsToUint(inspected_distance(ray, hit.t));
+    children next;
     if (has_scatter) {
-        bool visible = scatter(ray, weight, s, n, lit_by, ids, m, at.absent, first_lights);
-        lit = lit && visible;
+        next = scatter(ray, weight, s, n, lit_by, ids, m, at.absent, first_lights);
+        lit = lit && !next.hidden;
     }
     film_sum sum = film_zero();
     if (has_fog && first_lights && !has_inspect)
@@ -193,6 +197,7 @@ void main()
         if (explains)
             note_own_light(weight * (m.ambient * color), weight * emission, own);
     }
+    shadow_counts counts = shadow_counts(0u, 0u);
     uint count = hidden(work.light_count);
     lit = lit && count != 0u;
     for (uint l = 0u;;) {
@@ -200,12 +205,19 @@ void main()
         if (has_trees)
             send_lights(work.light + l, some, weight, color, m, s, n, lit_by, ray, lit, sum);
         else
-            add_lights(work.light + l, some, weight, color, m, s, n, lit_by, -ray.direction, lit, sum);
+            add_lights(work.light + l, some, weight, color, m, s, n, lit_by, -ray.direction, lit, sum,
+                       counts);
         l += 4u;
         if (l >= count)
             break;
     }
-    if (wanted)
-        film_add(ray.pixel, sum);
-    COUNT(counters.shaded, uint(wanted))
+    film_add_batch(ray.pixel, sum);
+    add_count(LR_COUNTER_SHADED, uint(wanted));
+    add_count(LR_COUNTER_SHADOW, counts.traced);
+    add_count(LR_COUNTER_SHADOW_HITS, counts.hits);
+    if (has_scatter)
+        count_children(next);
+    write_counts();
+    if (has_scatter)
+        emit_children(next, ray.pixel, s, n);
 }

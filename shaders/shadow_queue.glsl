@@ -42,10 +42,9 @@ const gpu_shadow_way no_way = gpu_shadow_way(vec3(0.0), 0.0);
 // of the same source together. `way` is for paths alone.
 void send_light(gpu_shadow_ray ray, gpu_shadow_way way, bool wanted)
 {
-    uint segment = ray.light & uint(LR_SHADOW_LIGHTS - 1), slot;
+    uint segment = ray.light & uint(LR_SHADOW_LIGHTS - 1);
     uint begin = segment * work.shadow_room;
-    TAKE_SLOT(counters.shadow_rays[segment], wanted, slot)
-    slot += work.shadow_first[segment];
+    uint slot = take_slot(LR_COUNTER_SHADOW_RAYS + segment, wanted) + work.shadow_first[segment];
     if (wanted && hidden(work.sorted) != 0u)
         atomicAdd(cells[segment * LR_CELLS + cell_of(ray.origin)], 1u);
     // The host checks that no segment ran over.

@@ -175,7 +175,7 @@ void main()
             slab_ready(k, frame.reach);
     }
     visit_scene();
-    uint count = 0u, blocked = 0u;
+    uint done = 0u, blocked = 0u;
     for (uint k = 0u;;) {
         bool wanted = packet_index(k) < work.count;
         gpu_shadow_ray job = load_shadow_ray(shadow_index(k));
@@ -196,19 +196,20 @@ void main()
         }
         if (lit)
             film_add(pixel, sum);
-        count += uint(wanted);
+        done += uint(wanted);
         blocked += uint(wanted) & (met >> (k & 31u)) & 1u;
         k++;
         if (k >= uint(RAYS))
             break;
     }
     if (joint) {
-        COUNT(counters.shadow, count)
-        COUNT(counters.shadow_hits, blocked)
+        add_count(LR_COUNTER_SHADOW, done);
+        add_count(LR_COUNTER_SHADOW_HITS, blocked);
+        write_counts();
     } else {
-        atomicAdd(counters.shadow, count);
-        atomicAdd(counters.shadow_hits, blocked);
+        atomicAdd(counters[LR_COUNTER_SHADOW], done);
+        atomicAdd(counters[LR_COUNTER_SHADOW_HITS], blocked);
     }
     if (!finished)
-        atomicAdd(counters.unfinished, 1u);
+        atomicAdd(counters[LR_COUNTER_UNFINISHED], 1u);
 }

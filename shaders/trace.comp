@@ -30,18 +30,16 @@ void main()
     else
         met = trace_nearest(ray.origin, ray.direction);
     bool hit = wanted && met.primitive != LR_PRIMITIVE_NONE;
-    uint slot;
-    TAKE_SLOT(counters.hits, hit, slot)
-    if (hit && (slot & (uint(LR_GROUP_SIZE) - 1u)) == 0u)
-        atomicAdd(counters.hit_groups, 1u);
+    uint slot = take_slot(LR_COUNTER_HITS, hit);
+    add_count(LR_COUNTER_HIT_GROUPS, uint(hit && (slot & (uint(LR_GROUP_SIZE) - 1u)) == 0u));
     uint kind = ray_kind(ray);
-    COUNT(counters.reflected_hits, uint(hit && kind == LR_KIND_REFLECTED))
-    COUNT(counters.refracted_hits, uint(hit && kind == LR_KIND_REFRACTED))
-    COUNT(counters.traced, uint(wanted))
+    add_count(LR_COUNTER_REFLECTED_HITS, uint(hit && kind == LR_KIND_REFLECTED));
+    add_count(LR_COUNTER_REFRACTED_HITS, uint(hit && kind == LR_KIND_REFRACTED));
+    add_count(LR_COUNTER_TRACED, uint(wanted));
     if (explains && wanted)
         note_ray(ray, met.t, met.primitive);
+    film_sum sum = film_zero();
     if (wanted && !hit) {
-        film_sum sum = film_zero();
         vec3 fog;
         vec3 weight = weight_after(ray, met.t, fog);
         if (has_fog && !has_inspect)
@@ -50,12 +48,13 @@ void main()
         if (has_inspect)
             beyond = inspected_beyond(ray);
         film_accumulate(sum, beyond);
-        film_add(ray.pixel, sum);
         if (explains) {
             note_air(weight, fog, medium_of(ray));
             note_background(beyond);
         }
     }
+    film_add_batch(ray.pixel, sum);
+    write_counts();
     // Last, because on a CPU an atomic waits for all stores before it.
     if (explains && hit)
         notes.of_hit[slot] = noted_ray;

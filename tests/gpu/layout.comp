@@ -28,6 +28,7 @@ layout(std430, set = 0, binding = LR_BIND_COUNT) readonly buffer RecordBlock
     gpu_texture some_texture[2];
     gpu_light some_light[2];
     gpu_emitter some_emitter[2];
+    gpu_counters some_counters[2];
     gpu_emitter_map some_emitter_map[2];
     gpu_environment some_environment[2];
     gpu_sky_row some_sky_row[2];
@@ -221,14 +222,6 @@ void main()
     put(work.film_first);
     put(work.film_pitch); put(work.samples); put(work.rounds); put(work.resumed);
     put(work.plane_rows); put(work.sphere_rows); put(work.flat_rows); put(work.solid_rows);
-    put(counters.hit_groups); put(counters.hit_groups_y); put(counters.hit_groups_z);
-    put(counters.hits); put(counters.rays); put(counters.traced); put(counters.shaded);
-    put(counters.reflected); put(counters.refracted); put(counters.passed);
-    put(counters.reflected_hits); put(counters.refracted_hits); put(counters.shadow);
-    put(counters.shadow_hits); put(counters.dropped_depth); put(counters.dropped_weight);
-    put(counters.dropped_nesting); put(counters.non_finite); put(counters.saturated);
-    put(counters.made); for (uint k = 0u; k < 4u; k++)
-        put(counters.shadow_rays[k]);
-    put(counters.found);
-    put(counters.unfinished); put(counters.made_hits); put(counters.unused0);
+    for (uint k = 0u; k < 28u; k++)
+        put(counters[k]);
 }
