@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "scene/color.h"
 
 lr_camera *lr_scene_add_camera(lr_scene_builder *builder)
 {
@@ -31,6 +32,11 @@ lr_object *lr_scene_add_object(lr_scene_builder *builder)
                           sizeof *scene->objects))
         return NULL;
     return &scene->objects[scene->object_count++];
+}
+
+bool lr_light_is_black(const lr_light *light)
+{
+    return !(light->intensity > 0) || lr_color_is_black(light->color);
 }
 
 lr_light *lr_scene_add_light(lr_scene_builder *builder)

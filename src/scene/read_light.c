@@ -39,6 +39,22 @@ static bool complete_spot(lr_reader *reader, const lr_record *record, const lr_g
     return true;
 }
 
+/* Reports a light that is black, and not by keys at this frame alone: most likely a slip. */
+static bool check_bright(lr_reader *reader, const lr_record *record, const lr_given *given,
+                         const lr_light *light)
+{
+    const lr_node *color = lr_given_value(given, record, "color");
+    const lr_node *intensity = lr_given_value(given, record, "intensity");
+    if ((color && lr_keys_of(reader, color)) || (intensity && lr_keys_of(reader, intensity)))
+        return true;
+    if (!lr_light_is_black(light))
+        return true;
+    lr_report_add(reader->report, light->intensity > 0 ? color->offset : intensity->offset,
+                  "the %s light is black; leave it out, or write `lights: []` for none",
+                  record->name);
+    return false;
+}
+
 void lr_read_lights(lr_reader *reader, const lr_node *node)
 {
     if (node->kind != LR_NODE_LIST) {
@@ -65,6 +81,8 @@ void lr_read_lights(lr_reader *reader, const lr_node *node)
         draft.light.line = key->line;
         if (draft.light.kind == LR_LIGHT_SPOT &&
             !complete_spot(reader, record, &given, key, &draft))
+            continue;
+        if (!check_bright(reader, record, &given, &draft.light))
             continue;
         lr_light *light = lr_scene_add_light(&reader->builder);
         if (!light) {

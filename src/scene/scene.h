@@ -231,6 +231,8 @@ typedef struct lr_light {
     bool shadows;
 } lr_light;
 
+bool lr_light_is_black(const lr_light *light);
+
 typedef enum lr_projection { LR_PERSPECTIVE, LR_ORTHOGRAPHIC, LR_PANORAMA } lr_projection;
 
 typedef enum lr_background_kind {

@@ -436,9 +436,13 @@ static void put_lights(lr_writer *writer)
     const lr_scene *scene = writer->scene;
     if (scene->default_light)
         return;
-    fputs(scene->light_count ? "lights:\n" : "lights: []\n", writer->out);
+    bool any = false;
     for (uint32_t i = 0; i < scene->light_count; i++) {
         const lr_light *light = &scene->lights[i];
+        if (lr_light_is_black(light)) /* imported so: the language refuses them */
+            continue;
+        fputs(any ? "" : "lights:\n", writer->out);
+        any = true;
         const lr_record *record =
             record_of(lr_light_records, lr_light_record_count, (int)light->kind);
         lr_light_draft draft = {.light = *light};
@@ -448,6 +452,8 @@ static void put_lights(lr_writer *writer)
         end_mapping(&map);
         fputc('\n', writer->out);
     }
+    if (!any)
+        fputs("lights: []\n", writer->out);
 }
 
 static void put_matrix(mapping *map, const lr_transform *t)

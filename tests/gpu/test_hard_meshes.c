@@ -6,12 +6,12 @@
 
 #define BEGINNING                                                                                  \
     "camera: {from: [0, 0, 4], to: [0, 0, 0], fov: 40}\nimage: {width: 32, height: 32}\n"          \
-    "ambient: 1\nlights: [directional: {direction: [0, 0, -1], intensity: 0}]\nobjects:\n"
+    "ambient: 1\nlights: []\nobjects:\n"
 
 #define COINCIDENT                                                                                 \
     "camera: {from: [0, 0, %g], to: [0, 0, %g], fov: 10}\n"                                        \
     "image: {width: 8, height: 8, depth: 0}\nambient: %d\n"                                        \
-    "lights: [directional: {direction: [0, 0, -1], intensity: %d}]\nobjects:\n"                    \
+    "lights: [%s]\nobjects:\n"                                                                     \
     "  - mesh: {file: first.ply, %s}\n"                                                            \
     "  - mesh: {file: second.ply, material: {color: [0, 0.25, 0]}}\n"                              \
     "  - plane: {normal: [0, 0, 1], offset: -9}\n"
@@ -121,12 +121,12 @@ static void test_coincident_objects(void **state)
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         text seen = {0}, floor = {0};
-        add(&seen, COINCIDENT, cases[i].from, 0.0, 1, 0, cases[i].first);
+        add(&seen, COINCIDENT, cases[i].from, 0.0, 1, "", cases[i].first);
         picture p = render_in_folder(*state, &seen, NULL);
         assert_near(pixel_at(&p, 4, 4).r, cases[i].red, 1e-6);
         assert_near(pixel_at(&p, 4, 4).g, cases[i].green, 1e-6);
         free_picture(&p);
-        add(&floor, COINCIDENT, -5.0, -9.0, 0, 1, cases[i].first);
+        add(&floor, COINCIDENT, -5.0, -9.0, 0, "directional: {direction: [0, 0, -1]}", cases[i].first);
         p = render_in_folder(*state, &floor, NULL);
         assert_near(pixel_at(&p, 4, 4).g, cases[i].floor, 1e-6);
         free_picture(&p);

@@ -75,6 +75,10 @@ static void test_missing(void **state)
         {"lights: [{spot: {position: [0, 1, 0], to: [0, 0, 0], direction: [0, 1, 0]}}]\n" SPHERE(
              ""),
          "1:65: the spot has both \"to\" and \"direction\""},
+        {"lights: [{point: {position: [0, 1, 0], intensity: 0}}]\n" SPHERE(""),
+         "1:51: the point light is black; leave it out, or write `lights: []` for none"},
+        {"lights: [{directional: {direction: [0, -1, 0], color: black}}]\n" SPHERE(""),
+         "1:55: the directional light is black"},
         {"fog: {color: red}\n" SPHERE(""), "1:6: fog has no \"density\", expected a number"},
         {SPHERE("rotate: {angle: 3}"), "3:20: rotate has no \"axis\", expected three numbers"},
         {"camera: {aperture: 1, projection: panorama}\nobjects: [{sphere: {}}]\n",

@@ -33,7 +33,7 @@ static const char everything[] =
     "  m: {color: {keys: {0: [1, 0, 0], 10: [0, 0, 1]}}, emission: {keys: {0: 0, 10: 5}}}\n"
     "  n: {color: {checker: [{keys: {0: 0, 10: 1}}, white]}}\n"
     "lights:\n"
-    "  - point: {position: [0, {keys: {0: 2, 10: 4}}, 0], intensity: {keys: {5: 1, 6: 9}}}\n"
+    "  - point: {position: [0, {keys: {0: 2, 10: 4}}, 0], intensity: {keys: {5: 0, 6: 9}}}\n"
     "objects:\n"
     "  - group:\n"
     "      translate: {keys: {0: [0, 0, 0], 10: [0, 0, 10]}}\n"
@@ -60,7 +60,7 @@ static void test_values(void **state)
         assert_near(s->materials[0].emission.x, 5 * share, 1e-12);
         assert_near(s->materials[1].color.colors[0].x, share, 1e-12);
         assert_near(s->lights[0].position.y, 2 + 2 * share, 1e-12);
-        assert_near(s->lights[0].intensity, i == 2 ? 9 : 1, 1e-12); /* ... and after the last */
+        assert_near(s->lights[0].intensity, i == 2 ? 9 : 0, 1e-12); /* ... and after the last */
         assert_near(s->objects[0].sphere.radius, 1 + 2 * share, 1e-12);
         assert_near(s->objects[0].to_world.m[2][3], 10 * share, 1e-12);
         /* Angles as they are written: half a turn after half of the way, and a whole one. */
