@@ -12,8 +12,7 @@
 /* Of a path in a message, so that a long one leaves room for the reason. */
 #define SHOWN "%.400s"
 
-/* `relative` behind the folder of base_file. */
-static char *join(const char *base_file, const char *relative)
+char *lr_path_join(const char *base_file, const char *relative)
 {
     const char *slash = strrchr(base_file, '/');
     size_t folder = slash && relative[0] != '/' ? (size_t)(slash + 1 - base_file) : 0;
@@ -39,7 +38,7 @@ static lr_status check_place(const char *base_file, const char *path, const char
                              lr_error *error)
 {
     lr_status status = LR_ERROR_MEMORY;
-    char *joined = join(base_file, "."), *folder = NULL, *real = NULL;
+    char *joined = lr_path_join(base_file, "."), *folder = NULL, *real = NULL;
     if (!joined)
         goto done;
     folder = realpath(joined, NULL);
@@ -101,7 +100,7 @@ lr_status lr_path_resolve(const char *base_file, const char *relative,
     *path = NULL;
     if (relative[0] == 0)
         return lr_fail(error, LR_ERROR_FILE, "the name of a file is empty");
-    char *joined = join(base_file, relative);
+    char *joined = lr_path_join(base_file, relative);
     bool reachable = allow_outside || relative[0] != '/';
     if (!joined || (reachable && !lr_file_list_add(options, joined))) {
         free(joined);

@@ -4,6 +4,9 @@
 
 #include "base/status.h"
 
+/* `relative` behind the folder of base_file; NULL when memory is out. */
+char *lr_path_join(const char *base_file, const char *relative);
+
 /* Finds the regular file that `relative` names as seen from the folder of base_file, and leaves a
  * path to it in *path, which the caller frees. Unless options->allow_path, the file must lie in
  * that folder or below it, symbolic links followed. The path goes into options->files, if only the

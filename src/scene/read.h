@@ -126,6 +126,10 @@ void lr_read_background(lr_reader *reader, const lr_node *node, const lr_field *
 void lr_read_lights(lr_reader *reader, const lr_node *node);
 void lr_read_objects(lr_reader *reader, const lr_node *node);
 
+/* The path of a file that the text names: lr_path_resolve, but that the files of a moment, which have all
+ * been read, may be gone since. */
+lr_status lr_read_path(lr_reader *reader, const char *name, char **path, lr_error *error);
+
 /* The objects of the mesh file that `file` names; NULL after reporting. */
 const lr_mesh_file *lr_read_mesh_file(lr_reader *reader, const lr_node *file);
 void lr_mesh_files_free(lr_mesh_files *files);

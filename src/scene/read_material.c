@@ -3,7 +3,6 @@
 
 #include "base/memory.h"
 #include "scene/models.h"
-#include "scene/path.h"
 #include "scene/texture.h"
 
 #include <math.h>
@@ -16,7 +15,7 @@ bool lr_read_picture(lr_reader *reader, const lr_node *node, const char *file, l
 {
     char *path;
     lr_error error = {0};
-    lr_status status = lr_path_resolve(reader->report->name, file, &reader->options, &path, &error);
+    lr_status status = lr_read_path(reader, file, &path, &error);
     if (!status)
         status = lr_texture_load(&reader->builder, path, wrap_u, wrap_v, texels, texture, &error);
     free(path);

@@ -23,14 +23,21 @@ static bool list_files(lr_reader *reader, const lr_file_list *files)
     return listed;
 }
 
+lr_status lr_read_path(lr_reader *reader, const char *name, char **path, lr_error *error)
+{
+    if (!reader->moment)
+        return lr_path_resolve(reader->report->name, name, &reader->options, path, error);
+    *path = lr_path_join(reader->report->name, name);
+    return *path ? LR_OK : LR_ERROR_MEMORY;
+}
+
 /* What the scene before made of the file; NULL when that is of no use. */
 static lr_part *find_part(lr_reader *reader, const char *name)
 {
     const lr_load_options *options = &reader->options;
     lr_error ignored;
     char *path;
-    if (!options->previous ||
-        lr_path_resolve(reader->report->name, name, options, &path, &ignored) != LR_OK)
+    if (!options->previous || lr_read_path(reader, name, &path, &ignored) != LR_OK)
         return NULL;
     lr_part *part = lr_part_find(&reader->builder, path, options->allow_path);
     free(path);

@@ -7,11 +7,11 @@ camera: {from: {keys: {0: [0, 1, 5], 4: [4, 1, 5]}}, to: [0, 0, 0], shutter: 0.5
 image: {width: 96, height: 64, samples: 24, integrator: path}
 lights: [{point: {position: [3, {keys: {0: 2, 2: 6}}, 4], intensity: 40}}]
 objects:
-  - plane: {offset: -1, material: {color: {checker: [white, [0.1, 0.1, 0.1]]}}}
+  - plane: {offset: -1, material: {color: {image: tiles.png}}}
   - sphere: {radius: 0.5, translate: {keys: {0: [-1, 0, 0], 2: [3, 0, 0]}}}
   - mesh: {file: knot.ply, scale: 0.3, rotate: [{keys: {0: 0, 4: 360}}, 0, 0]}
 END
-cp scenes/models/knot.ply "$work"
+cp scenes/models/knot.ply scenes/pictures/tiles.png "$work"
 scene=$work/scene.yaml
 folder=$work/folder
 mkdir "$folder"
@@ -80,11 +80,11 @@ args=(render "$scene" -q --frame 1 --spp 200)
 "$lavaray" "${args[@]}" -o "$work/one.ppm"
 "$lavaray" "${args[@]}" -o "$work/other.ppm" --checkpoint "$folder/c" --checkpoint-seconds 0.01 &
 while [ ! -e "$folder/c" ] && kill -0 $! 2>/dev/null; do sleep 0.01; done
-mv "$work/knot.ply" "$work/kept.ply" && printf 'no mesh' >"$work/knot.ply"
+mv "$work/knot.ply" "$work/kept.ply" && mv "$work/tiles.png" "$work/kept.png" && sleep 0.3 && printf 'no mesh' >"$work/knot.ply"
 sed 's/radius: 0.5/radius: 1/' "$scene" >"$work/changed.yaml" && cp "$work/changed.yaml" "$scene"
 wait $! || problem 'a render whose files change'
 same "$work/one.ppm" "$work/other.ppm"
-mv "$work/kept.ply" "$work/knot.ply"
+mv "$work/kept.ply" "$work/knot.ply" && mv "$work/kept.png" "$work/tiles.png"
 
 # What is told of the motion.
 expect 0 "$lavaray" info "$scene" && says out '^  motion     from frame to frame, and while the shutter is open, not of cameras alone$'
