@@ -57,7 +57,7 @@ void test_triangle(uint i, bool valid, gpu_instance place)
     gpu_triangle f = joint_triangle(i);
     EACH_RAY
     {
-        triangle_hit hit = intersect_triangle(ray_o[k], mesh_ray[k], f);
+        triangle_hit hit = meet_triangle(k, f);
         bool sided = has_one_sided && ((f.flags | place.flags) & LR_FLAG_ONE_SIDED) != 0u;
         bool there = valid && !(sided && !hit.front);
         keep(k, there, hit.t, i, f.object + place.object, f.order);

@@ -121,7 +121,7 @@ void test_triangle(uint i, bool valid, gpu_instance place)
         material = load_object_ids(f.object + place.object).x;
     EACH_RAY
     {
-        triangle_hit met = intersect_triangle(ray_o[k], mesh_ray[k], f);
+        triangle_hit met = meet_triangle(k, f);
         bool hole = false;
         if (has_cutouts)
             hole = cut_out(material, mesh_uv(i, f.flags, met.weight));

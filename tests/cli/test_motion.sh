@@ -28,6 +28,13 @@ for integrator in path whitted; do
     rm "$folder"/*
 done
 
+# In this sample a ray passes a triangle edge-on, and hit it or not by the rays beside it in the packet.
+for threads in 2 1 3 5; do
+    LP_NUM_THREADS=$threads "$lavaray" render "$scene" -q --frame 1 --sample-range 16-16 -o "$folder/$threads.exr"
+    same "$folder/2.exr" "$folder/$threads.exr"
+done
+rm "$folder"/*
+
 # Killed over and over; each run goes on from the one before, with other tiles.
 args=(render "$scene" -q --frame 1 --spp 100)
 "$lavaray" "${args[@]}" -o "$work/one.ppm"
