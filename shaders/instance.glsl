@@ -23,17 +23,11 @@ void keep_world(uint k)
     world_d[k] = ray_d[k];
 }
 
-// A triangle that is seen edge-on may be found anywhere along its line, as the signs are then those of
-// roundings. Such a hit would count or not by which boxes other rays of the packet open: it must lie within
-// the triangle's own box, and so within all that are around it.
+// With half the slack of boxes, so that all boxes around the triangle's own are met where that is.
 triangle_hit meet_triangle(uint k, gpu_triangle f)
 {
     triangle_hit hit = intersect_triangle(ray_o[k], mesh_ray[k], f);
-    vec3 p = ray_o[k] + ray_d[k] * hit.t;
-    vec3 low = min(f.a, min(f.b, f.c)), high = max(f.a, max(f.b, f.c));
-    float slack = 0.5 * slab_slack[k];
-    bool inside = all(greaterThanEqual(p, low - slack)) && all(lessThanEqual(p, high + slack));
-    hit.t = inside ? hit.t : -1.0;
+    hit.t = t_in_box(hit.t, ray_o[k], slab_inverse[k], 0.5 * slab_slack[k], f);
     return hit;
 }
 

@@ -6,11 +6,11 @@
 
 #include "watertight.spv.h"
 
-#define RING 14
+#define RING 32
 #define ROUNDS 64 /* rays of an invocation */
 
 typedef struct edge {
-    float from[3], count, to[3], reach, center[4], corners[3 * RING][4];
+    float from[3], count, to[3], reach, center[3], extent, corners[3 * RING][4];
 } edge;
 
 /* ROUNDS * LR_GROUP_SIZE rays to each edge of so many. */
@@ -26,6 +26,12 @@ static void inside_of_sphere(const float *point, double offset, float center[3],
     for (int k = 0; k < 3; k++)
         center[k] = (float)offset;
     *reach = 0.2f;
+}
+
+static void inside_of_flattened(const float *point, double offset, float center[3], float *reach)
+{
+    inside_of_sphere(point, offset, center, reach);
+    *reach = 0.45f;
 }
 
 static void inside_of_torus(const float *point, double offset, float center[3], float *reach)
@@ -52,16 +58,21 @@ static void describe_edge(const test_mesh *m, uint32_t from, uint32_t to, edge *
         if (!has_corner(t, from) && !has_corner(t, to))
             continue;
         assert_in_range(count, 0, RING - 1);
-        for (uint32_t k = 0; k < 3; k++)
-            memcpy(e->corners[3 * count + k], &m->positions[3 * (size_t)t[k]], 3 * sizeof(float));
+        for (uint32_t k = 0; k < 3; k++) {
+            float *corner = e->corners[3 * count + k];
+            memcpy(corner, &m->positions[3 * (size_t)t[k]], 3 * sizeof *corner);
+            for (uint32_t axis = 0; axis < 3; axis++)
+                e->extent = fmaxf(e->extent, fabsf(corner[axis]));
+        }
         count++;
     }
     e->count = (float)count;
 }
 
-/* Returns how many rays there were; *fused is how many of them a fused test would lose. */
-static uint64_t check_edges(lr_device *device, const test_mesh *m, const char *name, start inside,
-                            double offset, uint64_t *fused)
+/* With edges of triangles from `first` on. Returns how many rays there were; *fused is how many of
+ * them a fused test would lose. */
+static uint64_t check_edges(lr_device *device, const test_mesh *m, uint32_t first, const char *name,
+                            start inside, double offset, uint64_t *fused)
 {
     edge *edges = calloc(EDGES, sizeof *edges);
     assert_non_null(edges);
@@ -69,7 +80,8 @@ static uint64_t check_edges(lr_device *device, const test_mesh *m, const char *n
     uint64_t lost = 0, lost_fused = 0, rays = 0;
     assert_non_null(out);
     for (uint32_t i = 0; i < EDGES; i++) {
-        const uint32_t *t = &m->triangles[3 * (size_t)(random_bits(&seed) % m->triangle_count)];
+        uint32_t triangle = first + random_bits(&seed) % (m->triangle_count - first);
+        const uint32_t *t = &m->triangles[3 * (size_t)triangle];
         uint32_t k = random_bits(&seed) % 3;
         describe_edge(m, t[k], t[(k + 1) % 3], &edges[i]);
         inside(edges[i].from, offset, edges[i].center, &edges[i].reach);
@@ -103,21 +115,59 @@ static void move(test_mesh *m, double by)
         m->positions[i] += (float)by;
 }
 
+/* Six parts of the unit sphere made flat, across the axes, so that the boxes of triangles there
+ * have no depth. */
+static void flatten(test_mesh *m)
+{
+    for (uint32_t i = 0; i < 3 * m->vertex_count; i++)
+        m->positions[i] = fminf(fmaxf(m->positions[i], -0.8f), 0.8f);
+}
+
+/* The mesh with a vertex beside the first edge of each triangle, 1e-5 of the way to the corner
+ * across: a sliver lies between the two triangles there and the whole edge of the neighbour. The
+ * slivers are its last third. */
+static test_mesh with_slivers(const test_mesh *m)
+{
+    test_mesh cut = make_mesh(m->vertex_count + m->triangle_count, 3 * m->triangle_count);
+    memcpy(cut.positions, m->positions, 3 * sizeof *m->positions * m->vertex_count);
+    for (uint32_t i = 0; i < m->triangle_count; i++) {
+        const uint32_t *t = &m->triangles[3 * (size_t)i], middle = m->vertex_count + i;
+        for (size_t axis = 0; axis < 3; axis++) {
+            double a = (double)m->positions[3 * (size_t)t[0] + axis];
+            double b = (double)m->positions[3 * (size_t)t[1] + axis];
+            double c = (double)m->positions[3 * (size_t)t[2] + axis];
+            cut.positions[3 * (size_t)middle + axis] = (float)(0.6 * a + 0.39999 * b + 0.00001 * c);
+        }
+        set_triangle(&cut, 2 * i, t[0], middle, t[2]);
+        set_triangle(&cut, 2 * i + 1, middle, t[1], t[2]);
+        set_triangle(&cut, 2 * m->triangle_count + i, t[0], t[1], middle);
+    }
+    return cut;
+}
+
 static void test_edges(void **state)
 {
     uint64_t rays = 0, fused = 0;
     for (double offset = 0; offset <= 1000; offset += 1000) {
         test_mesh ball = sphere_mesh(4), rough = sphere_mesh(4), torus = torus_mesh(12, 900, 0.4);
+        test_mesh flattened = sphere_mesh(4);
         roughen(&rough, 0.03, 4);
+        flatten(&flattened);
         move(&ball, offset);
         move(&rough, offset);
         move(&torus, offset);
-        rays += check_edges(*state, &ball, "sphere", inside_of_sphere, offset, &fused);
-        rays += check_edges(*state, &rough, "rough sphere", inside_of_sphere, offset, &fused);
-        rays += check_edges(*state, &torus, "torus of needles", inside_of_torus, offset, &fused);
+        move(&flattened, offset);
+        test_mesh slivers = with_slivers(&flattened);
+        rays += check_edges(*state, &ball, 0, "sphere", inside_of_sphere, offset, &fused);
+        rays += check_edges(*state, &rough, 0, "rough sphere", inside_of_sphere, offset, &fused);
+        rays += check_edges(*state, &torus, 0, "torus of needles", inside_of_torus, offset, &fused);
+        rays += check_edges(*state, &slivers, 2 * flattened.triangle_count, "slivers",
+                            inside_of_flattened, offset, &fused);
         free_mesh(&ball);
         free_mesh(&rough);
         free_mesh(&torus);
+        free_mesh(&flattened);
+        free_mesh(&slivers);
     }
     assert_true(rays >= 10000000);
     assert_true(fused > 100); /* or the rays do not aim where it matters */

@@ -9,13 +9,13 @@
 
 layout(local_size_x = LR_GROUP_SIZE) in;
 
-#define RING 14 /* triangles at most around an edge and its ends */
+#define RING 32 /* triangles at most around an edge and its ends */
 #define ROUNDS 64
 
 struct edge {
     vec4 from;  // .w: triangles around it
     vec4 to;    // .w: how far from `center` rays start, at most
-    vec4 center;
+    vec4 center; // .w: how far from 0 the corners are, at most
     vec4 corners[3 * RING];
 };
 
@@ -57,6 +57,7 @@ void main()
     uint which = gl_WorkGroupID.x, state = gl_GlobalInvocationID.x * 9781u + 5u;
     vec3 from = edges[which].from.xyz, to = edges[which].to.xyz, center = edges[which].center.xyz;
     float reach = edges[which].to.w;
+    float slack = 0.5 * LR_BOX_SLACK * edges[which].center.w; // as the kernels have it
     uint count = uint(edges[which].from.w), lost = 0u, lost_fused = 0u;
     for (uint round = 0u;;) {
         vec3 jump = vec3(unit(state), unit(state), unit(state)) * 2.0 - 1.0;
@@ -67,12 +68,14 @@ void main()
         if ((round & 1u) != 0u)
             d = ex_normalize(d);
         sheared_ray ray = shear_ray(d);
+        vec3 inverse = vec3(ex_rcp(away_from_zero(d.x)), ex_rcp(away_from_zero(d.y)),
+                            ex_rcp(away_from_zero(d.z)));
         bool met = false, met_fused = false;
         for (uint i = 0u;;) {
             gpu_triangle f = gpu_triangle(edges[which].corners[3u * i].xyz, 0u,
                                           edges[which].corners[3u * i + 1u].xyz, 0u,
                                           edges[which].corners[3u * i + 2u].xyz, 0u);
-            met = met || intersect_triangle(o, ray, f).t > 0.0;
+            met = met || t_in_box(intersect_triangle(o, ray, f).t, o, inverse, slack, f) > 0.0;
             met_fused = met_fused || fused_hit(o, ray, f);
             i++;
             if (i >= count)
