@@ -5,15 +5,14 @@
 #define EXACT_GLSL
 
 // 1 / x for 2^-100 <= |x| <= 2^100, within 1.5 ulp. Newton's iteration from an integer first guess
-// that is within 6 %. Elsewhere the result is unspecified, and not a number for 0.
+// that is within 6 %; the difference keeps the sign. Elsewhere the result is unspecified, and not a number for 0.
 float ex_rcp(float x)
 {
-    float a = abs(x);
-    float y = uintBitsToFloat(0x7EF311C3u - floatBitsToUint(a));
-    y = y + y * (1.0 - a * y);
-    y = y + y * (1.0 - a * y);
-    y = y + y * (1.0 - a * y);
-    return x < 0.0 ? -y : y;
+    float y = uintBitsToFloat(0x7EF311C3u - floatBitsToUint(x));
+    y = y + y * (1.0 - x * y);
+    y = y + y * (1.0 - x * y);
+    y = y + y * (1.0 - x * y);
+    return y;
 }
 
 // A number with the sign of x, kept away from 0 so that ex_rcp of it is finite.
