@@ -27,7 +27,7 @@ void keep_world(uint k)
 triangle_hit meet_triangle(uint k, gpu_triangle f)
 {
     triangle_hit hit = intersect_triangle(ray_o[k], mesh_ray[k], f);
-    hit.t = t_in_box(hit.t, ray_o[k], slab_inverse[k], 0.5 * slab_slack[k], f);
+    hit.t = t_in_box(hit.t, ray_o[k], slab_inverse[k], slab_slack[k], f);
     return hit;
 }
 

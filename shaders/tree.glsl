@@ -11,7 +11,7 @@ const bool has_world_tree = has_sphere_tree || has_flat_tree || has_ellipsoid_tr
 
 // 1 / direction, and the origin times it, moved forward and back by what all rounding may amount to.
 vec3 slab_inverse[RAYS], slab_from[RAYS], slab_to[RAYS];
-float slab_slack[RAYS];
+vec3 slab_slack[RAYS]; // half of that rounding, in distances along the ray
 
 // Readies ray k for boxes whose coordinates go up to `reach`.
 void slab_ready(uint k, float reach)
@@ -20,7 +20,7 @@ void slab_ready(uint k, float reach)
     vec3 inverse = vec3(ex_rcp(away_from_zero(d.x)), ex_rcp(away_from_zero(d.y)),
                         ex_rcp(away_from_zero(d.z)));
     float slack = (reach + max(a.x, max(a.y, a.z))) * LR_BOX_SLACK;
-    slab_slack[k] = slack;
+    slab_slack[k] = 0.5 * slack * abs(inverse);
     slab_inverse[k] = inverse;
     slab_from[k] = (o + slack) * inverse;
     slab_to[k] = (o - slack) * inverse;

@@ -62,13 +62,15 @@ triangle_hit intersect_triangle(vec3 o, sheared_ray ray, gpu_triangle f)
 
 // Where a ray that meets the triangle at t, as `intersect_triangle` has it, is to meet it, or -1. Seen edge-on,
 // all signs are those of roundings: the triangle is met anywhere along its line, in truth beside it or not. So
-// the ray must pass the box around its corners, widened by `slack`, and the hit is moved into that. Distances
-// are compared by their bits, as in slab_entry. `inverse` is 1 / direction.
-float t_in_box(float t, vec3 o, vec3 inverse, float slack, gpu_triangle f)
+// the ray must pass the box around its corners, and the hit is moved into that. `slack` widens it, in distances
+// along the ray by axis; `inverse` is 1 / direction. Distances are compared by their bits, as in slab_entry: the
+// least of three is right unless one is negative, and the greatest unless all are.
+float t_in_box(float t, vec3 o, vec3 inverse, vec3 slack, gpu_triangle f)
 {
-    vec3 low = min(f.a, min(f.b, f.c)) - o, high = max(f.a, max(f.b, f.c)) - o;
-    ivec3 b0 = floatBitsToInt((low - slack) * inverse), b1 = floatBitsToInt((high + slack) * inverse);
-    ivec3 near = min(b0, b1), far = max(b0, b1);
+    ivec3 a = floatBitsToInt((f.a - o) * inverse), b = floatBitsToInt((f.b - o) * inverse);
+    ivec3 c = floatBitsToInt((f.c - o) * inverse);
+    ivec3 near = floatBitsToInt(intBitsToFloat(min(a, min(b, c))) - slack);
+    ivec3 far = floatBitsToInt(intBitsToFloat(max(a, max(b, c))) + slack);
     int first = max(max(near.x, near.y), max(near.z, 0)), last = min(far.x, min(far.y, far.z));
     int bits = floatBitsToInt(t);
     return first <= last && bits >= 0 ? intBitsToFloat(clamp(bits, first, last)) : -1.0;

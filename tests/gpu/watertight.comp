@@ -57,7 +57,7 @@ void main()
     uint which = gl_WorkGroupID.x, state = gl_GlobalInvocationID.x * 9781u + 5u;
     vec3 from = edges[which].from.xyz, to = edges[which].to.xyz, center = edges[which].center.xyz;
     float reach = edges[which].to.w;
-    float slack = 0.5 * LR_BOX_SLACK * edges[which].center.w; // as the kernels have it
+    float extent = edges[which].center.w;
     uint count = uint(edges[which].from.w), lost = 0u, lost_fused = 0u;
     for (uint round = 0u;;) {
         vec3 jump = vec3(unit(state), unit(state), unit(state)) * 2.0 - 1.0;
@@ -70,6 +70,7 @@ void main()
         sheared_ray ray = shear_ray(d);
         vec3 inverse = vec3(ex_rcp(away_from_zero(d.x)), ex_rcp(away_from_zero(d.y)),
                             ex_rcp(away_from_zero(d.z)));
+        vec3 slack = 0.5 * LR_BOX_SLACK * extent * abs(inverse); // as the kernels have it
         bool met = false, met_fused = false;
         for (uint i = 0u;;) {
             gpu_triangle f = gpu_triangle(edges[which].corners[3u * i].xyz, 0u,
