@@ -34,7 +34,7 @@ LAMP = "[{point: {position: [-1, 2, 0.2]}}]"
 
 
 def build():
-    subprocess.run(["cmake", "--build", BUILD, "--target", "bench_traverse"], check=True,
+    subprocess.run(["cmake", "--build", BUILD, "--target", "bench_traverse", "lavaray"], check=True,
                    stdout=subprocess.DEVNULL)
 
 
@@ -54,29 +54,40 @@ def trace_paths(work, color, lights):
     return rays["bounced"]["traced"], rays["shadow"]["traced"], stats["cpu_seconds"]["trace"]
 
 
-def measure_paths(work, count):
-    """Millions of rays per CPU second end to end: bounces, without what the same frame of black ground takes,
-    where paths end at their first hit; and in a frame with a light, camera rays' time included, bounces
-    and rays towards the light."""
-    rates = []
-    for _ in range(count):
-        camera_seconds = trace_paths(work, 0, "[]")[2]
-        bounced, _, seconds = trace_paths(work, 0.7, "[]")
-        alone = bounced / (seconds - camera_seconds)
-        bounced, asked, seconds = trace_paths(work, 0.7, LAMP)
-        rates.append((alone, (bounced + asked) / seconds))
-    return {name: 1e-6 * statistics.median(values)
-            for name, values in zip(("bounces", "frame_with_light"), zip(*rates))}
+def measure_paths(work, traversal):
+    """Millions of rays per CPU second end to end, and their share of `traversal`: bounces, without what the
+    same frame of black ground takes, where paths end at their first hit; and in a frame with a light, camera
+    rays' time included, bounces and rays towards the light."""
+    camera_seconds = trace_paths(work, 0, "[]")[2]
+    bounced, _, seconds = trace_paths(work, 0.7, "[]")
+    alone = 1e-6 * bounced / (seconds - camera_seconds)
+    bounced, asked, seconds = trace_paths(work, 0.7, LAMP)
+    frame = 1e-6 * (bounced + asked) / seconds
+    return {"bounces": alone, "bounces_share": alone / traversal,
+            "frame_with_light": frame, "frame_share": frame / traversal}
+
+
+def medians(rounds):
+    """Of each number in results of the same form."""
+    first = rounds[0]
+    if isinstance(first, dict):
+        return {key: medians([result[key] for result in rounds]) for key in first}
+    return first if isinstance(first, str) else statistics.median(rounds)
 
 
 def measure(count):
+    """In rounds, so that a machine's drift meets all that is compared."""
     build()
     result = {"machine": machine()}
     for name, side in (("70k", 187), ("1M", 708)):
+        rounds = []
         with tempfile.TemporaryDirectory() as work:
-            command = [PROGRAM, "measure", str(side), write_hills(side, work), str(count)]
-            told = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-            result[name] = dict(json.loads(told), paths=measure_paths(work, count))
+            command = [PROGRAM, "measure", str(side), write_hills(side, work), "1"]
+            for _ in range(count):
+                told = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+                traversal = told["bounce"]["lavaray_packets"]["mrays_per_cpu_second"]
+                rounds.append(dict(told, paths=measure_paths(work, traversal)))
+        result[name] = medians(rounds)
     return result
 
 
@@ -109,9 +120,9 @@ def markdown(result):
               "light | |", "|---|---|---|---|---|---|"]
     for size in ("70k", "1M"):
         alone, paths = result[size]["bounce"]["lavaray_packets"]["mrays_per_cpu_second"], result[size]["paths"]
-        lines.append("| %s triangles | %.2f | %.2f | %s | %.2f | %s |" % (
-            size, alone, paths["bounces"], percent(paths["bounces"], alone),
-            paths["frame_with_light"], percent(paths["frame_with_light"], alone)))
+        lines.append("| %s triangles | %.2f | %.2f | %.0f %% | %.2f | %.0f %% |" % (
+            size, alone, paths["bounces"], 100 * paths["bounces_share"], paths["frame_with_light"],
+            100 * paths["frame_share"]))
     return "\n".join(lines)
 
 
