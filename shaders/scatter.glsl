@@ -147,15 +147,23 @@ void count_children(children c)
     add_count(LR_COUNTER_DROPPED_NESTING, c.dropped.nested);
 }
 
-// Puts the children into the next queue. The last thing that a kernel does: on a CPU an atomic waits for
-// all stores before it.
+// Puts the children into the next queue, the reflected one of each invocation first. The last thing that a kernel
+// does: on a CPU an atomic waits for all stores before it. In a loop, as the stores of a ray are a lot of code there.
 void emit_children(children c, uint pixel, surface s, vec3 n)
 {
     uvec2 slots = take_slots(LR_COUNTER_RAYS, c.has_mirrored, c.has_through);
-    if (c.has_mirrored)
-        emit(slots.x, c.mirrored, pixel, s, n);
-    if (c.has_through)
-        emit(slots.y, c.through, pixel, s, n);
+    uint count = uint(c.has_mirrored) + uint(c.has_through), most = batch_max(count);
+    for (uint i = 0u;;) {
+        bool mirrored = c.has_mirrored && i == 0u;
+        child next = c.through;
+        if (mirrored)
+            next = c.mirrored;
+        if (i < count)
+            emit(mirrored ? slots.x : slots.y, next, pixel, s, n);
+        i++;
+        if (i >= most)
+            break;
+    }
 }
 
 #endif
